@@ -1,0 +1,47 @@
+#pragma once
+#include <filesystem>
+#include <string>
+
+namespace priormap {
+
+enum class Overwrite { refuse, allow };
+
+/// A file that appears under its name only when it is whole. Write to `temporary_path()`, then `commit()`.
+/// Without commit the temporary file is removed.
+class AtomicFile {
+ public:
+  /// @throws IoError when `target` exists and overwriting is refused, or its folder cannot be written.
+  AtomicFile(std::filesystem::path target, Overwrite overwrite);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  const std::filesystem::path& temporary_path() const { return temporary_; }
+  /// Flushes to disk and renames. @throws IoError
+  void commit();
+
+ private:
+  std::filesystem::path target_, temporary_;
+  bool committed_ = false;
+};
+
+/// A directory that appears under its name only when it is whole. An existing directory is replaced only with
+/// `Overwrite::allow` and only when it is empty or holds `marker_file` (so that a tool never empties a stranger's folder).
+class AtomicDirectory {
+ public:
+  /// @throws IoError as above.
+  AtomicDirectory(std::filesystem::path target, Overwrite overwrite, std::string marker_file);
+  ~AtomicDirectory();
+  AtomicDirectory(const AtomicDirectory&) = delete;
+  AtomicDirectory& operator=(const AtomicDirectory&) = delete;
+
+  const std::filesystem::path& temporary_path() const { return temporary_; }
+  /// Renames into place; the replaced directory is removed last. @throws IoError
+  void commit();
+
+ private:
+  std::filesystem::path target_, temporary_;
+  bool committed_ = false;
+};
+
+}  // namespace priormap

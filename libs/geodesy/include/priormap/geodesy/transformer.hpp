@@ -1,0 +1,55 @@
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <priormap/geodesy/crs.hpp>
+
+namespace priormap {
+
+/// Which operation a Transformer uses; goes into the manifest.
+struct CoordinateOperation {
+  std::string name;                    ///< as PROJ names it
+  std::string proj_string;             ///< pipeline
+  std::vector<std::string> grids;      ///< short names of the grids used
+  std::optional<double> accuracy_m;    ///< as the authority states it
+};
+
+/// Coordinates from one CRS to another, whole arrays at once. One object per thread (PROJ contexts are not shared);
+/// copies make their own context.
+///
+/// Never a ballpark step, never 2D to 3D: heights are either transformed by a known operation or the request is refused.
+/// Where neither side has heights, or `source` and `target` have the same vertical CRS, z is passed through as it is.
+/// A source with undeclared heights (2D) to a 2D target passes z through: the caller knows they are undeclared.
+class Transformer {
+ public:
+  /// @throws CrsError when no exact operation exists. The message names the missing grid where one is missing, or says that
+  /// no operation is known between the two, or that the source's heights are undeclared.
+  Transformer(const Crs& source, const Crs& target);
+  Transformer(const Transformer& other);
+  Transformer& operator=(const Transformer& other);
+  Transformer(Transformer&&) noexcept;
+  Transformer& operator=(Transformer&&) noexcept;
+  ~Transformer();
+
+  /// East, north, up (longitude, latitude, height in degrees for geographic systems), in place.
+  /// Points that cannot be transformed become NaN.
+  void forward(std::span<Eigen::Vector3d> points) const;
+  void inverse(std::span<Eigen::Vector3d> points) const;
+  Eigen::Vector3d forward(const Eigen::Vector3d& point) const;
+  Eigen::Vector3d inverse(const Eigen::Vector3d& point) const;
+
+  const Crs& source() const;
+  const Crs& target() const;
+  const CoordinateOperation& operation() const;
+  bool is_identity() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace priormap

@@ -1,0 +1,28 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+namespace priormap {
+
+/// Closed ring without repeating the first vertex.
+using Ring2 = std::vector<Eigen::Vector2d>;
+using Ring3 = std::vector<Eigen::Vector3d>;
+
+/// Polygon in the plane with holes; exterior counter-clockwise, holes clockwise after `normalize`.
+struct Polygon2 {
+  Ring2 exterior;
+  std::vector<Ring2> holes;
+};
+
+/// Polygon in space with holes, ideally planar; its exterior runs counter-clockwise seen from outside (from its normal's side).
+struct Polygon3 {
+  Ring3 exterior;
+  std::vector<Ring3> holes;
+};
+
+double signed_area(const Ring2& ring);       ///< positive counter-clockwise
+double area(const Polygon2& polygon);        ///< less its holes
+bool contains(const Polygon2& polygon, const Eigen::Vector2d& point);   ///< even-odd; the edge itself may go either way
+Eigen::Vector3d newell_normal(const Ring3& ring);   ///< length = twice the area
+
+}  // namespace priormap
