@@ -1,0 +1,71 @@
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <priormap/pointcloud/point_cloud.hpp>
+#include <vector>
+
+namespace priormap {
+
+struct VoxelHashMapOptions {
+  double voxel_m = 1.0;
+  int max_points = 10;             ///< in one voxel
+  double min_distance_m = 0.1;     ///< between points of one voxel
+
+  template <class Visitor>
+  void describe(Visitor& visit) {
+    visit("voxel", voxel_m, {"edge of a voxel of the target maps", "m", 0.05, 100});
+    visit("max-points", max_points, {"most points kept in one voxel", "", 1, 1000});
+    visit("min-distance", min_distance_m, {"least distance of points within a voxel", "m", 0, 100});
+  }
+};
+
+/// A point of the map and how far it is from the query, in the map's frame.
+struct Neighbor {
+  Eigen::Vector3d position;
+  double distance_m;
+};
+
+/// Points in hashed voxels: the linear iVox (Bai et al., Faster-LIO, RA-L 2022) of the paper. A voxel takes a point only while it is not full and no
+/// point of that voxel is nearer than the least distance, so what it holds depends on the order of insertion and on nothing else.
+/// Positions are kept as float32 relative to the voxel's corner: sub-micrometre anywhere in a frame of 2^31 voxels.
+class VoxelHashMap {
+ public:
+  explicit VoxelHashMap(const VoxelHashMapOptions& options = {});
+
+  /// Inserts points given in the map's frame after `T_map_points`. Points that are not finite are ignored.
+  void insert(const PointCloud& points, const Eigen::Isometry3d& T_map_points = Eigen::Isometry3d::Identity());
+  void insert(const Eigen::Vector3d& p_map);
+  /// Drops each voxel whose centre is farther than `distance_m` from `center`.
+  void remove_beyond(const Eigen::Vector3d& center, double distance_m);
+  /// The nearest point within the 27 voxels around `query`; none when they are empty. The first inserted wins a tie.
+  std::optional<Neighbor> nearest(const Eigen::Vector3d& query) const;
+
+  std::size_t size() const { return size_; }  ///< points held
+  bool empty() const { return size_ == 0; }
+  std::size_t voxel_count() const { return voxels_.size(); }
+  /// All points, relative to `origin`, voxel by voxel.
+  PointCloud points(const Eigen::Vector3d& origin = Eigen::Vector3d::Zero()) const;
+  const VoxelHashMapOptions& options() const { return options_; }
+
+ private:
+  struct Voxel {
+    Eigen::Vector3i key;
+    std::uint32_t count;
+  };
+  static constexpr std::uint32_t none = 0xffffffffu;
+
+  Eigen::Vector3i key_of(const Eigen::Vector3d& p) const;
+  std::uint32_t find(const Eigen::Vector3i& key) const;
+  std::uint32_t find_or_add(const Eigen::Vector3i& key);
+  void rehash(std::size_t slots);
+
+  VoxelHashMapOptions options_;
+  std::vector<Voxel> voxels_;
+  std::vector<Eigen::Vector3f> in_voxel_;  ///< max_points per voxel, relative to the voxel's corner
+  std::vector<std::uint32_t> slots_;       ///< open addressing, index into voxels_
+  std::size_t size_ = 0;
+};
+
+}  // namespace priormap
