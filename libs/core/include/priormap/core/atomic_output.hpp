@@ -7,7 +7,7 @@ namespace priormap {
 enum class Overwrite { refuse, allow };
 
 /// A file that appears under its name only when it is whole. Write to `temporary_path()`, then `commit()`.
-/// Without commit the temporary file is removed.
+/// Without commit the temporary file is removed. Missing parent folders are created; a symbolic link is followed.
 class AtomicFile {
  public:
   /// @throws IoError when `target` exists and overwriting is refused, or its folder cannot be written.
@@ -17,11 +17,12 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   const std::filesystem::path& temporary_path() const { return temporary_; }
-  /// Flushes to disk and renames. @throws IoError
+  /// Flushes to disk and renames. What wrote the file must have been closed and checked before (see OutputFile). @throws IoError
   void commit();
 
  private:
   std::filesystem::path target_, temporary_;
+  Overwrite overwrite_;
   bool committed_ = false;
 };
 
@@ -41,7 +42,12 @@ class AtomicDirectory {
 
  private:
   std::filesystem::path target_, temporary_;
+  Overwrite overwrite_;
+  std::string marker_file_;
   bool committed_ = false;
 };
+
+/// Removes the temporary files and directories of all outputs not yet committed: for a program that is being interrupted.
+void discard_pending_outputs();
 
 }  // namespace priormap

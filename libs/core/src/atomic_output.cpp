@@ -1,0 +1,204 @@
+#include <priormap/core/atomic_output.hpp>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <functional>
+#include <mutex>
+#include <set>
+
+#include <priormap/core/error.hpp>
+
+namespace priormap {
+namespace fs = std::filesystem;
+namespace {
+
+// Temporary paths of outputs that are not committed yet. One list for the process: a signal arrives at the process, not at
+// the object that owns the file.
+class PendingOutputs {
+ public:
+  void add(const fs::path& path) {
+    const std::lock_guard lock(mutex_);
+    paths_.insert(path);
+  }
+  void discard(const fs::path& path) {
+    const std::lock_guard lock(mutex_);
+    remove_tree(path);
+    paths_.erase(path);
+  }
+  void discard_all() {
+    const std::lock_guard lock(mutex_);
+    for (const fs::path& path : paths_) remove_tree(path);
+    paths_.clear();
+  }
+  /// Runs `rename` while no interruption can remove the path, then forgets the path.
+  void publish(const fs::path& path, const std::function<void()>& rename) {
+    const std::lock_guard lock(mutex_);
+    rename();
+    paths_.erase(path);
+  }
+
+ private:
+  // Other threads may still be creating files inside.
+  static void remove_tree(const fs::path& path) {
+    std::error_code error;
+    for (int attempt = 0; attempt < 100; ++attempt) {
+      fs::remove_all(path, error);
+      if (!error) return;
+    }
+  }
+  std::mutex mutex_;
+  std::set<fs::path> paths_;
+};
+
+PendingOutputs& pending_outputs() {
+  static PendingOutputs instance;
+  return instance;
+}
+
+std::string cause(const char* what) { return std::string(what) + ": " + std::strerror(errno); }
+
+fs::path resolved(const fs::path& target) {
+  std::error_code error;
+  fs::path path = fs::absolute(target).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  const fs::path followed = fs::is_symlink(path, error) ? fs::canonical(path, error) : path;
+  return error ? path : followed;
+}
+
+void create_parent(const fs::path& target) {
+  std::error_code error;
+  fs::create_directories(target.parent_path(), error);
+  if (error) throw IoError(target.parent_path(), "cannot be created: " + error.message());
+}
+
+// In the target's own folder, so that the rename stays on one file system; keeps the extension, by which some writers
+// choose their format. `create` answers false with errno set.
+fs::path create_temporary(const fs::path& target, const std::function<bool(const fs::path&)>& create) {
+  static std::atomic<unsigned> serial = 0;
+  for (;;) {
+    fs::path temporary = target.parent_path() / (".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(serial++) + "-" +
+                                                 target.filename().string());
+    if (create(temporary)) return temporary;
+    if (errno != EEXIST) throw IoError(target, cause("cannot be created"));
+  }
+}
+
+[[noreturn]] void refuse_existing(const fs::path& target) { throw IoError(target, "exists already; --overwrite replaces it"); }
+
+void sync_parent(const fs::path& target) {
+  const int folder = ::open(target.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  ::fsync(folder);
+  ::close(folder);
+}
+
+void sync_or_throw(const fs::path& path, const fs::path& target, int (*sync)(int)) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) throw IoError(target, cause("cannot be written"));
+  const int failed = sync(descriptor);
+  const int error = errno;
+  ::close(descriptor);
+  errno = error;
+  if (failed) throw IoError(target, cause("cannot be written"));
+}
+
+/// renameat2 where the file system knows the flag.
+bool rename_with(const fs::path& from, const fs::path& to, unsigned flags) {
+  return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), flags) == 0;
+}
+bool flag_unsupported() { return errno == EINVAL || errno == ENOSYS; }
+
+void rename_to_new_name(const fs::path& from, const fs::path& to) {
+  if (rename_with(from, to, RENAME_NOREPLACE)) return;
+  if (errno == EEXIST || (flag_unsupported() && fs::exists(to))) refuse_existing(to);
+  if (flag_unsupported() && ::rename(from.c_str(), to.c_str()) == 0) return;
+  throw IoError(to, cause("cannot be put in place"));
+}
+
+/// Afterwards `to` holds what was `from`, and `from` what was `to`.
+void exchange_directories(const fs::path& from, const fs::path& to) {
+  if (rename_with(from, to, RENAME_EXCHANGE)) return;
+  const fs::path old = fs::path(from).concat("-old");
+  if (flag_unsupported() && ::rename(to.c_str(), old.c_str()) == 0) {
+    if (::rename(from.c_str(), to.c_str()) == 0 && ::rename(old.c_str(), from.c_str()) == 0) return;
+    const int error = errno;
+    if (!fs::exists(to)) ::rename(old.c_str(), to.c_str());
+    errno = error;
+  }
+  throw IoError(to, cause("cannot be replaced"));
+}
+
+void check_file_target(const fs::path& target, Overwrite overwrite) {
+  if (!fs::exists(target)) return;
+  if (!fs::is_regular_file(target)) throw IoError(target, "is not a regular file; choose another output name");
+  if (overwrite == Overwrite::refuse) refuse_existing(target);
+}
+
+void check_directory_target(const fs::path& target, Overwrite overwrite, const std::string& marker_file) {
+  if (!fs::exists(target)) return;
+  if (!fs::is_directory(target)) throw IoError(target, "exists and is not a directory; choose another output name");
+  if (overwrite == Overwrite::refuse) refuse_existing(target);
+  if (!fs::is_empty(target) && !fs::exists(target / marker_file))
+    throw IoError(target, "is not replaced: it holds other files and no " + marker_file + "; choose another output name");
+}
+
+}  // namespace
+
+void discard_pending_outputs() { pending_outputs().discard_all(); }
+
+AtomicFile::AtomicFile(fs::path target, Overwrite overwrite) : target_(resolved(target)), overwrite_(overwrite) {
+  check_file_target(target_, overwrite_);
+  create_parent(target_);
+  temporary_ = create_temporary(target_, [](const fs::path& path) {
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    return descriptor >= 0 && ::close(descriptor) == 0;
+  });
+  pending_outputs().add(temporary_);
+}
+
+AtomicFile::~AtomicFile() {
+  if (!committed_) pending_outputs().discard(temporary_);
+}
+
+void AtomicFile::commit() {
+  sync_or_throw(temporary_, target_, ::fsync);
+  pending_outputs().publish(temporary_, [this] {
+    if (overwrite_ == Overwrite::refuse) return rename_to_new_name(temporary_, target_);
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) throw IoError(target_, cause("cannot be put in place"));
+  });
+  committed_ = true;
+  sync_parent(target_);
+}
+
+AtomicDirectory::AtomicDirectory(fs::path target, Overwrite overwrite, std::string marker_file)
+    : target_(resolved(target)), overwrite_(overwrite), marker_file_(std::move(marker_file)) {
+  check_directory_target(target_, overwrite_, marker_file_);
+  create_parent(target_);
+  temporary_ = create_temporary(target_, [](const fs::path& path) { return ::mkdir(path.c_str(), 0777) == 0; });
+  pending_outputs().add(temporary_);
+}
+
+AtomicDirectory::~AtomicDirectory() {
+  if (!committed_) pending_outputs().discard(temporary_);
+}
+
+void AtomicDirectory::commit() {
+  // One call for the whole file system: a prior has thousands of tiles, and an fsync for each takes minutes.
+  sync_or_throw(temporary_, target_, ::syncfs);
+  check_directory_target(target_, overwrite_, marker_file_);
+  const bool replaces = fs::exists(target_);
+  pending_outputs().publish(temporary_, [&] {
+    replaces ? exchange_directories(temporary_, target_) : rename_to_new_name(temporary_, target_);
+  });
+  committed_ = true;
+  sync_parent(target_);
+  if (replaces) pending_outputs().discard(temporary_);
+}
+
+}  // namespace priormap
