@@ -165,6 +165,7 @@ void ToolApp::positional(const std::string& name, std::vector<std::string>& valu
                return toml_array(string_literals(values));
              })
       ->expected(1, CLI::detail::expected_max_vector_size)
+      ->allow_extra_args()
       ->required(required);
 }
 
