@@ -1,8 +1,10 @@
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,22 +18,29 @@ struct LasHeader {
   int point_format = 6;
   Eigen::Vector3d scale = Eigen::Vector3d::Constant(0.001);
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-  Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();
-  std::uint64_t num_points = 0;
-  std::string wkt;                                  ///< WKT record or, where GeoTIFF keys give an EPSG code, "EPSG:n"; empty: none
+  Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();  ///< as the file states them, not checked
+  std::uint64_t num_points = 0;                                                  ///< never more than the file's size allows
+  std::string crs;                            ///< WKT record, or "EPSG:h", "EPSG:h+v" where the GeoTIFF keys say so; empty: none
   std::vector<std::string> extra_byte_names;
 };
 
-/// Reads LAS 1.2 to 1.4, point formats 0-3 and 6-8, block by block. LAZ is refused by name.
+/// Reads LAS 1.2 to 1.4, point formats 0-3 and 6-8, block by block. Compressed files (LAZ) are refused by name. What the header
+/// promises is checked against the file's size before anything is allocated.
 class LasReader {
  public:
   /// @throws IoError, FormatError
   explicit LasReader(const std::filesystem::path& file);
+  /// A whole file in memory; `name` is for messages.
+  LasReader(std::vector<std::byte> bytes, std::string name);
   ~LasReader();
+  LasReader(LasReader&&) noexcept;
+
   const LasHeader& header() const;
-  /// Next at most `max_points` points, positions relative to `header().offset`-near origin; false at the end.
-  /// Columns filled: classification, intensity where any is non-zero, and normal, sigma_m, source, feature from extra bytes named so.
-  bool read(PointCloud& points, std::size_t max_points);
+  /// Replaces `points` by the next at most `max_points` points; false when there are none left.
+  /// Positions are relative to `origin`; default: the first point of the block, in whole units.
+  /// Columns filled: classification always; intensity where one is not zero; normal, sigma_m, source, feature, time_s where
+  /// extra bytes of these names (docs/file-formats.md) are there.
+  bool read(PointCloud& points, std::size_t max_points, const std::optional<Eigen::Vector3d>& origin = std::nullopt);
 
  private:
   struct Impl;
@@ -41,13 +50,17 @@ class LasReader {
 struct LasWriteOptions {
   int point_format = 6;                              ///< 6-8: LAS 1.4; 0-3: LAS 1.2
   Eigen::Vector3d scale = Eigen::Vector3d::Constant(0.001);
+  /// Coordinates are stored as 32-bit multiples of `scale` from here.
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-  std::string wkt;                                   ///< WKT1; written as the OGC WKT record (formats 6-8)
+  std::string wkt = {};                              ///< WKT1, written as the OGC WKT record; formats 6-8 only
 };
 
-/// Writes all columns that `points` has; extra bytes NormalX/Y/Z (float32... int16 scaled), Sigma, Source, Feature, as described in
-/// docs/file-formats.md. Creation date from SOURCE_DATE_EPOCH or 0. Plain write: callers put it inside an AtomicFile/Directory.
-/// @throws IoError on a full disk as well.
+/// The bytes of a LAS file with all columns that `points` has; the layout of the extra bytes is described in docs/file-formats.md.
+/// The creation date comes from SOURCE_DATE_EPOCH, or is 0: same points, same bytes.
+/// @throws UsageError for a position that is not finite or does not fit into 32 bits, or an option that the point format cannot hold.
+std::vector<std::byte> encode_las(const PointCloud& points, const LasWriteOptions& options);
+
+/// Plain write of `encode_las`: callers put it inside an AtomicFile or AtomicDirectory. @throws IoError, on a full disk as well.
 void write_las(const std::filesystem::path& file, const PointCloud& points, const LasWriteOptions& options);
 
 }  // namespace priormap

@@ -1,0 +1,38 @@
+#include <priormap/builder/prior_options.hpp>
+
+#include <cctype>
+#include <chrono>
+#include <cmath>
+
+#include <priormap/core/error.hpp>
+
+namespace priormap {
+namespace {
+
+bool is_date(const std::string& text) {
+  const std::string pattern = "dddd-dd-dd";
+  if (text.size() != pattern.size()) return false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool fits = pattern[i] == 'd' ? std::isdigit(static_cast<unsigned char>(text[i])) != 0 : text[i] == pattern[i];
+    if (!fits) return false;
+  }
+  return std::chrono::year_month_day{std::chrono::year(std::stoi(text.substr(0, 4))),
+                                     std::chrono::month(static_cast<unsigned>(std::stoi(text.substr(5, 2)))),
+                                     std::chrono::day(static_cast<unsigned>(std::stoi(text.substr(8, 2))))}
+      .ok();
+}
+
+}  // namespace
+
+void PriorOptions::validate() const {
+  if (!bbox.empty()) {
+    if (bbox.size() != 4) throw UsageError("--bbox needs four numbers: west,south,east,north");
+    for (double v : bbox)
+      if (!std::isfinite(v)) throw UsageError("--bbox needs four finite numbers: west,south,east,north");
+    if (!(bbox[0] < bbox[2] && bbox[1] < bbox[3]))
+      throw UsageError("--bbox is empty: west must be less than east and south less than north (west,south,east,north)");
+  }
+  if (!date.empty() && !is_date(date)) throw UsageError("--date '" + date + "' is no date of the form YYYY-MM-DD");
+}
+
+}  // namespace priormap

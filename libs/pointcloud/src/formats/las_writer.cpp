@@ -1,0 +1,261 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <string>
+
+#include <priormap/core/error.hpp>
+#include <priormap/core/version.hpp>
+#include <priormap/pointcloud/las.hpp>
+
+#include "formats/las_layout.hpp"
+#include "formats/write_bytes.hpp"
+
+namespace priormap {
+namespace {
+
+using namespace las;
+
+constexpr double normal_steps = 32767, sigma_steps_per_m = 1000;
+constexpr std::uint16_t unknown_sigma = 65535;
+
+/// Which of the cloud's columns become extra bytes, and where.
+std::vector<ExtraField> plan_extra_fields(const PointCloud& points, std::size_t base_length) {
+  std::vector<ExtraField> fields;
+  std::size_t position = base_length;
+  const auto add = [&](std::string_view name, ExtraType type, double scale = 1, std::optional<double> no_data = std::nullopt) {
+    fields.push_back({std::string(name), type, scale, 0, no_data, position});
+    position += size_of(type);
+  };
+  // The LAS intensity field is a 16-bit integer; other values are kept beside it.
+  const auto fits_las_intensity = [](float v) { return v >= 0 && v <= 65535 && v == std::floor(v); };
+  if (!points.normal.empty())
+    for (const auto name : normal_names) add(name, ExtraType::int16, 1 / normal_steps);
+  if (!points.sigma_m.empty()) add(sigma_name, ExtraType::uint16, 1 / sigma_steps_per_m, unknown_sigma);
+  if (!points.source.empty()) add(source_name, ExtraType::uint16);
+  if (!points.feature.empty()) add(feature_name, ExtraType::uint32, 1, PointCloud::no_feature);
+  if (!std::all_of(points.intensity.begin(), points.intensity.end(), fits_las_intensity)) add(intensity_name, ExtraType::float32);
+  if (!points.time_s.empty()) add(time_name, ExtraType::float32);
+  return fields;
+}
+
+const ExtraField* find(const std::vector<ExtraField>& fields, std::string_view name) {
+  const auto found = std::find_if(fields.begin(), fields.end(), [&](const ExtraField& f) { return f.name == name; });
+  return found == fields.end() ? nullptr : &*found;
+}
+
+struct RecordSink {
+  std::byte* first;
+  std::size_t count, length;
+  std::byte* at(std::size_t i, std::size_t position) const { return first + i * length + position; }
+};
+
+struct Extent {
+  Eigen::Array3d min = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Array3d max = Eigen::Array3d::Constant(-std::numeric_limits<double>::infinity());
+};
+
+/// Positions as multiples of the scale; returns their extent in multiples.
+Extent encode_positions(const PointCloud& points, const LasWriteOptions& options, const RecordSink& records) {
+  // Adding and taking away 1.5 * 2^52 rounds to the nearest integer, ties to even, without a library call.
+  constexpr double rounding = 6755399441055744.0;
+  const Eigen::Array3d steps = options.scale.array().inverse(), shift = (points.origin - options.offset).array();
+  Extent extent;
+  bool all_finite = true;
+  for (std::size_t i = 0; i < records.count; ++i) {
+    Eigen::Array3d q = (points.xyz[i].cast<double>().array() + shift) * steps;
+    q = (q + rounding) - rounding;
+    all_finite &= q.isFinite().all();
+    extent.min = extent.min.min(q);
+    extent.max = extent.max.max(q);
+    std::byte* at = records.at(i, 0);
+    for (int axis = 0; axis < 3; ++axis)
+      store(at + 4 * axis, static_cast<std::int32_t>(std::clamp(q[axis], -2147483648.0, 2147483647.0)));
+  }
+  if (!all_finite) throw UsageError("LAS cannot hold a position that is no number");
+  if ((extent.min < -2147483648.0).any() || (extent.max > 2147483647.0).any())
+    throw UsageError("positions lie too far from the LAS offset for the scale (32 bits); choose an offset near the points");
+  return extent;
+}
+
+void encode_standard_fields(const PointCloud& points, int point_format, const RecordSink& records) {
+  const bool extended = is_extended(point_format);
+  const std::byte only_return{static_cast<unsigned char>(extended ? 0x11 : 0x09)};  // return 1 of 1
+  const std::size_t class_position = extended ? 16 : 15;
+  for (std::size_t i = 0; i < records.count; ++i) *records.at(i, 14) = only_return;
+  for (std::size_t i = 0; i < points.intensity.size(); ++i)
+    store(records.at(i, 12), static_cast<std::uint16_t>(std::clamp(std::nearbyint(points.intensity[i]), 0.0f, 65535.0f)));
+  for (std::size_t i = 0; i < points.classification.size(); ++i) {
+    if (!extended && points.classification[i] > 31)
+      throw UsageError("class " + std::to_string(points.classification[i]) + " needs LAS point format 6, 7 or 8");
+    store(records.at(i, class_position), points.classification[i]);
+  }
+}
+
+void encode_normals(const PointCloud& points, const std::vector<ExtraField>& fields, const RecordSink& records) {
+  const ExtraField* first = find(fields, normal_names[0]);
+  if (!first) return;
+  const auto steps = [](float v) { return static_cast<std::int16_t>(std::lrint(std::clamp(v, -1.0f, 1.0f) * static_cast<float>(normal_steps))); };
+  for (std::size_t i = 0; i < records.count; ++i) {
+    const Eigen::Vector3f& n = points.normal[i];
+    std::byte* at = records.at(i, first->position);
+    store(at, steps(n.x()));
+    store(at + 2, steps(n.y()));
+    store(at + 4, steps(n.z()));
+  }
+}
+
+std::uint16_t sigma_steps(float sigma_m) {
+  const double steps = static_cast<double>(sigma_m) * sigma_steps_per_m;
+  return steps >= 0 ? static_cast<std::uint16_t>(std::lrint(std::min(steps, unknown_sigma - 1.0))) : unknown_sigma;
+}
+
+void encode_columns(const PointCloud& points, const std::vector<ExtraField>& fields, const RecordSink& records) {
+  encode_normals(points, fields, records);
+  const auto encode = [&](std::string_view name, const auto& column, auto convert) {
+    const ExtraField* field = find(fields, name);
+    if (!field) return;
+    for (std::size_t i = 0; i < records.count; ++i) store(records.at(i, field->position), convert(column[i]));
+  };
+  const auto as_is = [](auto v) { return v; };
+  encode(sigma_name, points.sigma_m, sigma_steps);
+  encode(source_name, points.source, as_is);
+  encode(feature_name, points.feature, as_is);
+  encode(intensity_name, points.intensity, as_is);
+  encode(time_name, points.time_s, as_is);
+}
+
+void put_text(std::byte* at, std::string_view text, std::size_t room) { std::memcpy(at, text.data(), std::min(text.size(), room)); }
+
+/// One entry of the Extra Bytes record (table 23).
+void put_extra_entry(std::byte* at, const ExtraField& field) {
+  store(at + 2, static_cast<std::uint8_t>(field.type));
+  store(at + 3, static_cast<std::uint8_t>((field.no_data ? 1 : 0) | (field.scale != 1 ? 8 : 0)));
+  put_text(at + 4, field.name, 32);
+  if (field.no_data) store(at + 40, static_cast<std::uint64_t>(*field.no_data));
+  if (field.scale != 1) store(at + 112, field.scale);
+}
+
+struct VariableRecord {
+  std::string user;
+  std::uint16_t id;
+  std::string description;
+  std::vector<std::byte> content;
+};
+
+std::vector<VariableRecord> plan_variable_records(const std::string& wkt, const std::vector<ExtraField>& fields) {
+  std::vector<VariableRecord> records;
+  if (!wkt.empty()) {
+    if (wkt.size() >= 65535) throw UsageError("the WKT of the CRS is too long for a LAS record");
+    std::vector<std::byte> content(wkt.size() + 1);
+    put_text(content.data(), wkt, wkt.size());
+    records.push_back({"LASF_Projection", wkt_record, "OGC WKT", std::move(content)});
+  }
+  if (!fields.empty()) {
+    std::vector<std::byte> content(fields.size() * extra_bytes_record_size);
+    for (std::size_t i = 0; i < fields.size(); ++i) put_extra_entry(&content[i * extra_bytes_record_size], fields[i]);
+    records.push_back({"LASF_Spec", extra_bytes_record, "Extra bytes", std::move(content)});
+  }
+  return records;
+}
+
+void put_variable_record(std::byte* at, const VariableRecord& record) {
+  put_text(at + 2, record.user, 16);
+  store(at + 18, record.id);
+  store(at + 20, static_cast<std::uint16_t>(record.content.size()));
+  put_text(at + 22, record.description, 32);
+  std::memcpy(at + vlr_header_size, record.content.data(), record.content.size());
+}
+
+/// Day of the year and year of SOURCE_DATE_EPOCH (reproducible-builds.org); zeros without it.
+void put_creation_date(std::byte* at) {
+  const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
+  if (!epoch) return;
+  const std::chrono::sys_days day = std::chrono::floor<std::chrono::days>(std::chrono::sys_seconds(std::chrono::seconds(std::atoll(epoch))));
+  const std::chrono::year_month_day date(day);
+  const std::chrono::sys_days new_year = date.year() / std::chrono::January / 1;
+  store(at, static_cast<std::uint16_t>((day - new_year).count() + 1));
+  store(at + 2, static_cast<std::uint16_t>(static_cast<int>(date.year())));
+}
+
+struct HeaderFacts {
+  std::size_t points_position, record_length, num_variable_records, num_points;
+  Extent extent;
+};
+
+void put_header(std::byte* at, const LasWriteOptions& options, const HeaderFacts& facts) {
+  const bool extended = is_extended(options.point_format);
+  put_text(at, "LASF", 4);
+  if (extended) store(at + 6, wkt_encoding_bit);
+  store(at + 24, std::uint8_t{1});
+  store(at + 25, static_cast<std::uint8_t>(extended ? 4 : 2));
+  put_text(at + 26, "priormap", 32);
+  put_text(at + 58, "priormap " + std::string(version), 32);
+  put_creation_date(at + 90);
+  store(at + 94, static_cast<std::uint16_t>(extended ? header_size_1_4 : header_size_1_2));
+  store(at + 96, static_cast<std::uint32_t>(facts.points_position));
+  store(at + 100, static_cast<std::uint32_t>(facts.num_variable_records));
+  store(at + 104, static_cast<std::uint8_t>(options.point_format));
+  store(at + 105, static_cast<std::uint16_t>(facts.record_length));
+  if (extended) {
+    store(at + 247, static_cast<std::uint64_t>(facts.num_points));
+    store(at + 255, static_cast<std::uint64_t>(facts.num_points));  // all are first returns
+  } else {
+    store(at + 107, static_cast<std::uint32_t>(facts.num_points));
+    store(at + 111, static_cast<std::uint32_t>(facts.num_points));
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    store(at + 131 + 8 * axis, options.scale[axis]);
+    store(at + 155 + 8 * axis, options.offset[axis]);
+    if (facts.num_points == 0) continue;
+    store(at + 179 + 16 * axis, facts.extent.max[axis] * options.scale[axis] + options.offset[axis]);
+    store(at + 187 + 16 * axis, facts.extent.min[axis] * options.scale[axis] + options.offset[axis]);
+  }
+}
+
+void check(const PointCloud& points, const LasWriteOptions& options) {
+  points.check_columns();
+  if (base_record_length(options.point_format) == 0)
+    throw UsageError("LAS point format " + std::to_string(options.point_format) + " is not supported; formats 0-3 and 6-8 are");
+  if (!is_extended(options.point_format) && !options.wkt.empty())
+    throw UsageError("LAS 1.2 holds no WKT; use point format 6, 7 or 8");
+  if (!is_extended(options.point_format) && points.size() > std::numeric_limits<std::uint32_t>::max())
+    throw UsageError("LAS 1.2 holds at most 4294967295 points; use point format 6, 7 or 8");
+  if (!options.scale.allFinite() || (options.scale.array() <= 0).any() || !options.offset.allFinite())
+    throw UsageError("LAS scale must be positive and the offset finite");
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_las(const PointCloud& points, const LasWriteOptions& options) {
+  check(points, options);
+  const auto fields = plan_extra_fields(points, base_record_length(options.point_format));
+  const auto variable_records = plan_variable_records(options.wkt, fields);
+
+  HeaderFacts facts{};
+  facts.num_points = points.size();
+  facts.num_variable_records = variable_records.size();
+  facts.record_length = fields.empty() ? base_record_length(options.point_format) : fields.back().position + size_of(fields.back().type);
+  facts.points_position = is_extended(options.point_format) ? header_size_1_4 : header_size_1_2;
+  for (const auto& record : variable_records) facts.points_position += vlr_header_size + record.content.size();
+
+  std::vector<std::byte> bytes(facts.points_position + facts.num_points * facts.record_length);
+  std::size_t position = is_extended(options.point_format) ? header_size_1_4 : header_size_1_2;
+  for (const auto& record : variable_records) {
+    put_variable_record(&bytes[position], record);
+    position += vlr_header_size + record.content.size();
+  }
+  const RecordSink records{bytes.data() + facts.points_position, facts.num_points, facts.record_length};
+  facts.extent = encode_positions(points, options, records);
+  encode_standard_fields(points, options.point_format, records);
+  encode_columns(points, fields, records);
+  put_header(bytes.data(), options, facts);
+  return bytes;
+}
+
+void write_las(const std::filesystem::path& file, const PointCloud& points, const LasWriteOptions& options) {
+  write_bytes(file, encode_las(points, options));
+}
+
+}  // namespace priormap
