@@ -61,7 +61,7 @@ class PoseGraph {
   /// Frame by frame: optimises the last `window` poses over the factors that touch them, all earlier ones held.
   OptimizeSummary optimize_last(std::size_t window = 1);
   /// All poses over all factors. A part of the graph without any absolute factor has its first pose held.
-  OptimizeSummary optimize(int threads = 1);
+  OptimizeSummary optimize();
 
   std::size_t size() const { return poses_.size(); }
   const Eigen::Isometry3d& pose(PoseId id) const { return poses_.at(id); }
@@ -73,11 +73,17 @@ class PoseGraph {
   std::vector<double> absolute_weights() const;
   std::vector<double> between_weights() const;
   /// Marginal covariance of each pose (the 6x6 diagonal blocks of the inverse of the weighted normal matrix at the present poses), same tangent as the
-  /// information; in time linear in the poses of a chain. Held poses have zero covariance.
+  /// information; in time linear in the poses of a chain. The first pose of a part that no absolute factor of non-zero weight ties to the map is held and
+  /// has zero covariance: the others of that part are uncertain relative to it. A direction that nothing constrains gets the variance 1e8.
   std::vector<Matrix6d> marginal_covariances() const;
 
  private:
+  struct FactorsOfPose {
+    std::vector<std::size_t> absolute, between;
+  };
+
   PoseGraphOptions options_;
+  std::vector<FactorsOfPose> factors_of_;
   std::vector<Eigen::Isometry3d> poses_;
   std::vector<AbsoluteFactor> absolute_;
   std::vector<BetweenFactor> between_;

@@ -24,7 +24,7 @@ struct IcpOptions {
 };
 
 /// Point-to-point ICP of `points` (sensor frame) against `target`, from `T_target_source`: nearest neighbours over 27 voxels, Geman-McClure kernel,
-/// Gauss-Newton (the paper, section III-B). With w = k^2 / (k^2 + r^2)^2 k^2 the weight of a residual r, so w(0) = 1 and w(k) = 1/4.
+/// Gauss-Newton (the paper, section III-B). A residual r has weight (k^2 / (k^2 + r^2))^2.
 /// A correspondence is a point with a neighbour within max_distance_m; an inlier one with a residual below kernel_width_m, both at the pose returned.
 /// Not converged: fewer than 3 correspondences (the guess comes back), a system that cannot be solved, or max_iterations.
 /// The sums run over fixed chunks in order: the same bytes for any number of threads.

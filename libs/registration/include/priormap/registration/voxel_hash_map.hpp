@@ -39,7 +39,7 @@ class VoxelHashMap {
   void insert(const Eigen::Vector3d& p_map);
   /// Drops each voxel whose centre is farther than `distance_m` from `center`.
   void remove_beyond(const Eigen::Vector3d& center, double distance_m);
-  /// The nearest point within the 27 voxels around `query`; none when they are empty. The first inserted wins a tie.
+  /// The nearest point within the 27 voxels around `query`; none when they are empty.
   std::optional<Neighbor> nearest(const Eigen::Vector3d& query) const;
 
   std::size_t size() const { return size_; }  ///< points held
@@ -57,7 +57,8 @@ class VoxelHashMap {
   static constexpr std::uint32_t none = 0xffffffffu;
 
   Eigen::Vector3i key_of(const Eigen::Vector3d& p) const;
-  std::uint32_t find(const Eigen::Vector3i& key) const;
+  Eigen::Vector3d corner_of(const Eigen::Vector3i& key) const { return key.cast<double>() * options_.voxel_m; }
+  std::size_t slot_of(const Eigen::Vector3i& key) const;
   std::uint32_t find_or_add(const Eigen::Vector3i& key);
   void rehash(std::size_t slots);
 

@@ -1,0 +1,319 @@
+#include <ceres/loss_function.h>
+#include <ceres/manifold.h>
+#include <ceres/problem.h>
+#include <ceres/sized_cost_function.h>
+#include <ceres/solver.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <numeric>
+#include <utility>
+#include <priormap/core/error.hpp>
+#include <priormap/posegraph/pose_graph.hpp>
+
+#include "pose_residuals.hpp"
+#include "selected_inverse.hpp"
+
+namespace priormap {
+namespace {
+
+using PoseParameters = std::array<double, 7>;  // qx qy qz qw tx ty tz
+using RowMatrix67 = Eigen::Matrix<double, 6, 7, Eigen::RowMajor>;
+using RowMatrix76 = Eigen::Matrix<double, 7, 6, Eigen::RowMajor>;
+
+Eigen::Isometry3d pose_of(const double* x) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::Map<const Eigen::Quaterniond>(x).toRotationMatrix();
+  T.translation() = Eigen::Map<const Eigen::Vector3d>(x + 4);
+  return T;
+}
+
+void set_parameters(const Eigen::Isometry3d& T, double* x) {
+  Eigen::Map<Eigen::Quaterniond>{x} = Eigen::Quaterniond(T.linear()).normalized();
+  Eigen::Map<Eigen::Vector3d>{x + 4} = T.translation();
+}
+
+/// d(q exp(w), t + R v) / d(w, v) at zero.
+RowMatrix76 plus_jacobian(const double* x) {
+  const Eigen::Map<const Eigen::Quaterniond> q(x);
+  RowMatrix76 J = RowMatrix76::Zero();
+  J.topLeftCorner<3, 3>() = 0.5 * (q.w() * Eigen::Matrix3d::Identity() + hat(q.vec()));
+  J.block<1, 3>(3, 0) = -0.5 * q.vec().transpose();
+  J.bottomRightCorner<3, 3>() = q.toRotationMatrix();
+  return J;
+}
+
+/// The left inverse of plus_jacobian: turns a Jacobian with respect to the tangent into one that Ceres takes.
+RowMatrix67 minus_jacobian(const double* x) {
+  const RowMatrix76 plus = plus_jacobian(x);
+  RowMatrix67 J = RowMatrix67::Zero();
+  J.topLeftCorner<3, 4>() = 4.0 * plus.topLeftCorner<4, 3>().transpose();
+  J.bottomRightCorner<3, 3>() = plus.bottomRightCorner<3, 3>().transpose();
+  return J;
+}
+
+class PoseManifold final : public ceres::Manifold {
+ public:
+  int AmbientSize() const override { return 7; }
+  int TangentSize() const override { return 6; }
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
+    set_parameters(retract(pose_of(x), Eigen::Map<const Vector6d>(delta)), x_plus_delta);
+    return true;
+  }
+  bool PlusJacobian(const double* x, double* jacobian) const override {
+    Eigen::Map<RowMatrix76>{jacobian} = plus_jacobian(x);
+    return true;
+  }
+  bool Minus(const double* y, const double* x, double* y_minus_x) const override {
+    Eigen::Map<Vector6d>{y_minus_x} = local_coordinates(pose_of(x), pose_of(y));
+    return true;
+  }
+  bool MinusJacobian(const double* x, double* jacobian) const override {
+    Eigen::Map<RowMatrix67>{jacobian} = minus_jacobian(x);
+    return true;
+  }
+};
+
+/// U with U^T U = information, also where a direction is not observed at all.
+Matrix6d square_root(const Matrix6d& information) {
+  const Eigen::LDLT<Matrix6d> ldlt(information);
+  Matrix6d U = ldlt.transpositionsP() * Matrix6d::Identity();
+  U = ldlt.matrixU() * U;
+  return ldlt.vectorD().cwiseMax(0.0).cwiseSqrt().asDiagonal() * U;
+}
+
+class AbsoluteCost final : public ceres::SizedCostFunction<6, 7> {
+ public:
+  explicit AbsoluteCost(const AbsoluteFactor& factor) : measured_(factor.T_map_sensor), U_(square_root(factor.information)) {}
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
+    const AbsoluteResidual e = absolute_residual(measured_, pose_of(x[0]));
+    Eigen::Map<Vector6d>{residuals} = U_ * e.r;
+    if (jacobians && jacobians[0]) Eigen::Map<RowMatrix67>{jacobians[0]} = U_ * e.J * minus_jacobian(x[0]);
+    return true;
+  }
+
+ private:
+  Eigen::Isometry3d measured_;
+  Matrix6d U_;
+};
+
+class BetweenCost final : public ceres::SizedCostFunction<6, 7, 7> {
+ public:
+  explicit BetweenCost(const BetweenFactor& factor) : measured_(factor.T_a_b), U_(square_root(factor.information)) {}
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
+    const BetweenResidual e = between_residual(measured_, pose_of(x[0]), pose_of(x[1]));
+    Eigen::Map<Vector6d>{residuals} = U_ * e.r;
+    if (jacobians && jacobians[0]) Eigen::Map<RowMatrix67>{jacobians[0]} = U_ * e.J_a * minus_jacobian(x[0]);
+    if (jacobians && jacobians[1]) Eigen::Map<RowMatrix67>{jacobians[1]} = U_ * e.J_b * minus_jacobian(x[1]);
+    return true;
+  }
+
+ private:
+  Eigen::Isometry3d measured_;
+  Matrix6d U_;
+};
+
+/// The Ceres problem over some of the poses. One thread and Eigen's own sparse solver: Ceres sums per thread and BLAS blocks per machine, and then the last bits vary.
+class PoseProblem {
+ public:
+  PoseProblem(std::span<const Eigen::Isometry3d> poses, const PoseGraphOptions& options)
+      : options_(options), tukey_(options.absolute_width > 0 ? options.absolute_width : 1.0),
+        cauchy_(options.between_width > 0 ? options.between_width : 1.0), parameters_(poses.size()), problem_(not_owning()) {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      set_parameters(poses[i], parameters_[i].data());
+      problem_.AddParameterBlock(parameters_[i].data(), 7, &manifold_);
+    }
+  }
+
+  void hold(std::size_t i) { problem_.SetParameterBlockConstant(parameters_[i].data()); }
+  void add(const AbsoluteFactor& factor, std::size_t i) {
+    problem_.AddResidualBlock(new AbsoluteCost(factor), options_.absolute_width > 0 ? &tukey_ : nullptr, parameters_[i].data());
+  }
+  void add(const BetweenFactor& factor, std::size_t a, std::size_t b) {
+    problem_.AddResidualBlock(new BetweenCost(factor), options_.between_width > 0 ? &cauchy_ : nullptr, parameters_[a].data(),
+                              parameters_[b].data());
+  }
+
+  OptimizeSummary solve(bool sparse) {
+    ceres::Solver::Options options;
+    options.linear_solver_type = sparse ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_NORMAL_CHOLESKY;
+    options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+    options.max_num_iterations = options_.max_iterations;
+    options.function_tolerance = 1e-9;
+    options.parameter_tolerance = 1e-14;
+    options.num_threads = 1;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &problem_, &summary);
+    return {summary.termination_type == ceres::CONVERGENCE, int(summary.iterations.size()), summary.initial_cost, summary.final_cost};
+  }
+
+  Eigen::Isometry3d pose(std::size_t i) const { return pose_of(parameters_[i].data()); }
+
+ private:
+  static ceres::Problem::Options not_owning() {
+    ceres::Problem::Options options;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.disable_all_safety_checks = true;
+    return options;
+  }
+
+  PoseGraphOptions options_;
+  ceres::TukeyLoss tukey_;
+  ceres::CauchyLoss cauchy_;
+  PoseManifold manifold_;
+  std::vector<PoseParameters> parameters_;
+  ceres::Problem problem_;
+};
+
+void check_information(const Matrix6d& information) {
+  const double scale = information.cwiseAbs().maxCoeff();
+  const bool symmetric = information.allFinite() && (information - information.transpose()).cwiseAbs().maxCoeff() <= 1e-9 * scale;
+  if (!symmetric || Eigen::SelfAdjointEigenSolver<Matrix6d>(information, Eigen::EigenvaluesOnly).eigenvalues()[0] < -1e-9 * scale)
+    throw UsageError("pose graph: an information matrix must be finite, symmetric and positive semi-definite");
+}
+
+/// Poses that fix the gauge: the first of each connected part in which no pose is `anchored`.
+std::vector<char> held_poses(const std::vector<char>& anchored, std::span<const BetweenFactor> between) {
+  std::vector<std::size_t> first(anchored.size());
+  std::iota(first.begin(), first.end(), std::size_t(0));
+  const auto root = [&](std::size_t i) {
+    while (first[i] != i) i = first[i] = first[first[i]];
+    return i;
+  };
+  for (const auto& factor : between) {
+    const std::size_t a = root(factor.a), b = root(factor.b);
+    first[std::max(a, b)] = std::min(a, b);
+  }
+  std::vector<char> part_anchored(anchored.size(), 0), held(anchored.size(), 0);
+  for (std::size_t i = 0; i < anchored.size(); ++i)
+    if (anchored[i]) part_anchored[root(i)] = 1;
+  for (std::size_t i = 0; i < anchored.size(); ++i) held[i] = root(i) == i && !part_anchored[i];
+  return held;
+}
+
+}  // namespace
+
+PoseGraph::PoseGraph(const PoseGraphOptions& options) : options_(options) {}
+
+PoseId PoseGraph::add_pose(const Eigen::Isometry3d& T_map_sensor) {
+  poses_.push_back(T_map_sensor);
+  factors_of_.emplace_back();
+  return poses_.size() - 1;
+}
+
+void PoseGraph::add_absolute(PoseId id, const Eigen::Isometry3d& T_map_sensor, const Matrix6d& information) {
+  if (id >= size()) throw UsageError("pose graph: an absolute factor on a pose that does not exist");
+  check_information(information);
+  factors_of_[id].absolute.push_back(absolute_.size());
+  absolute_.push_back({id, T_map_sensor, information});
+}
+
+void PoseGraph::add_between(PoseId a, PoseId b, const Eigen::Isometry3d& T_a_b, const Matrix6d& information) {
+  if (a >= size() || b >= size() || a == b) throw UsageError("pose graph: a between factor needs two poses that exist");
+  check_information(information);
+  factors_of_[std::max(a, b)].between.push_back(between_.size());
+  between_.push_back({a, b, T_a_b, information});
+}
+
+OptimizeSummary PoseGraph::optimize_last(std::size_t window) {
+  const std::size_t begin = size() - std::min(window, size());
+  std::size_t oldest = begin;
+  for (std::size_t i = begin; i < size(); ++i)
+    for (const std::size_t f : factors_of_[i].between) oldest = std::min({oldest, between_[f].a, between_[f].b});
+
+  PoseProblem problem(std::span<const Eigen::Isometry3d>(poses_).subspan(oldest), options_);
+  for (std::size_t i = oldest; i < begin; ++i) problem.hold(i - oldest);
+  for (std::size_t i = begin; i < size(); ++i) {
+    for (const std::size_t f : factors_of_[i].absolute) problem.add(absolute_[f], i - oldest);
+    for (const std::size_t f : factors_of_[i].between) problem.add(between_[f], between_[f].a - oldest, between_[f].b - oldest);
+  }
+  const OptimizeSummary summary = problem.solve(false);
+  for (std::size_t i = begin; i < size(); ++i) poses_[i] = problem.pose(i - oldest);
+  return summary;
+}
+
+OptimizeSummary PoseGraph::optimize() {
+  std::vector<char> anchored(size());
+  for (std::size_t i = 0; i < size(); ++i) anchored[i] = !factors_of_[i].absolute.empty();
+  const std::vector<char> held = held_poses(anchored, between_);
+
+  PoseProblem problem(poses_, options_);
+  for (std::size_t i = 0; i < size(); ++i)
+    if (held[i]) problem.hold(i);
+  for (const auto& factor : absolute_) problem.add(factor, factor.id);
+  for (const auto& factor : between_) problem.add(factor, factor.a, factor.b);
+  const OptimizeSummary summary = problem.solve(true);
+  for (std::size_t i = 0; i < size(); ++i)
+    if (!held[i]) poses_[i] = problem.pose(i);
+  return summary;
+}
+
+std::vector<double> PoseGraph::absolute_weights() const {
+  std::vector<double> weights;
+  weights.reserve(absolute_.size());
+  for (const auto& factor : absolute_) {
+    const Vector6d r = local_coordinates(factor.T_map_sensor, poses_[factor.id]);
+    weights.push_back(tukey_weight(r.dot(factor.information * r), options_.absolute_width));
+  }
+  return weights;
+}
+
+std::vector<double> PoseGraph::between_weights() const {
+  std::vector<double> weights;
+  weights.reserve(between_.size());
+  for (const auto& factor : between_) {
+    const Vector6d r = local_coordinates(factor.T_a_b, poses_[factor.a].inverse(Eigen::Isometry) * poses_[factor.b]);
+    weights.push_back(cauchy_weight(r.dot(factor.information * r), options_.between_width));
+  }
+  return weights;
+}
+
+std::vector<Matrix6d> PoseGraph::marginal_covariances() const {
+  const std::vector<double> w_absolute = absolute_weights(), w_between = between_weights();
+  std::vector<char> anchored(size(), 0);
+  for (std::size_t f = 0; f < absolute_.size(); ++f)
+    if (w_absolute[f] > 0) anchored[absolute_[f].id] = 1;
+  const std::vector<char> held = held_poses(anchored, between_);
+
+  std::vector<Eigen::Index> row_of(size(), -1);
+  Eigen::Index rows = 0;
+  for (std::size_t i = 0; i < size(); ++i)
+    if (!held[i]) row_of[i] = std::exchange(rows, rows + 6);
+
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto add_block = [&](std::size_t i, std::size_t j, const Matrix6d& block) {
+    if (row_of[i] < 0 || row_of[j] < 0 || row_of[i] < row_of[j]) return;
+    for (int r = 0; r < 6; ++r)
+      for (int c = 0; c < 6; ++c)
+        if (i != j || c <= r) entries.emplace_back(row_of[i] + r, row_of[j] + c, block(r, c));
+  };
+  for (std::size_t i = 0; i < size(); ++i) add_block(i, i, 1e-8 * Matrix6d::Identity());
+  for (std::size_t f = 0; f < absolute_.size(); ++f) {
+    const AbsoluteFactor& factor = absolute_[f];
+    const Matrix6d J = absolute_residual(factor.T_map_sensor, poses_[factor.id]).J;
+    add_block(factor.id, factor.id, w_absolute[f] * J.transpose() * factor.information * J);
+  }
+  for (std::size_t f = 0; f < between_.size(); ++f) {
+    const BetweenFactor& factor = between_[f];
+    const BetweenResidual e = between_residual(factor.T_a_b, poses_[factor.a], poses_[factor.b]);
+    const Matrix6d information = w_between[f] * factor.information;
+    add_block(factor.a, factor.a, e.J_a.transpose() * information * e.J_a);
+    add_block(factor.b, factor.b, e.J_b.transpose() * information * e.J_b);
+    add_block(factor.a, factor.b, e.J_a.transpose() * information * e.J_b);
+    add_block(factor.b, factor.a, e.J_b.transpose() * information * e.J_a);
+  }
+  Eigen::SparseMatrix<double> lower(rows, rows);
+  lower.setFromTriplets(entries.begin(), entries.end());
+
+  std::vector<Matrix6d> covariances(size(), Matrix6d::Zero());
+  if (rows == 0) return covariances;
+  const std::vector<Matrix6d> blocks = diagonal_blocks_of_inverse(lower);
+  for (std::size_t i = 0; i < size(); ++i)
+    if (row_of[i] >= 0) covariances[i] = blocks[std::size_t(row_of[i]) / 6];
+  return covariances;
+}
+
+}  // namespace priormap

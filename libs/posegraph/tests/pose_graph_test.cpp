@@ -1,0 +1,227 @@
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/autodiff_manifold.h>
+#include <ceres/ceres.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <priormap/core/error.hpp>
+#include <priormap/posegraph/pose_graph.hpp>
+#include <random>
+
+using namespace priormap;
+
+namespace {
+
+Eigen::Isometry3d pose(double x, double y, double z, double yaw = 0) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  T.translation() = Eigen::Vector3d(x, y, z);
+  return T;
+}
+
+Matrix6d information(double sigma_rad, double sigma_m) {
+  Vector6d diagonal;
+  diagonal << Eigen::Vector3d::Constant(1 / (sigma_rad * sigma_rad)), Eigen::Vector3d::Constant(1 / (sigma_m * sigma_m));
+  return diagonal.asDiagonal();
+}
+
+Matrix6d random_information(std::mt19937& random) {
+  std::normal_distribution<double> n;
+  Matrix6d A;
+  for (int i = 0; i < 36; ++i) A(i) = n(random);
+  return A * A.transpose() + Matrix6d::Identity();
+}
+
+Eigen::Isometry3d noisy(const Eigen::Isometry3d& T, std::mt19937& random, double sigma_rad, double sigma_m) {
+  std::normal_distribution<double> n;
+  Vector6d xi;
+  for (int i = 0; i < 6; ++i) xi[i] = n(random) * (i < 3 ? sigma_rad : sigma_m);
+  return retract(T, xi);
+}
+
+/// A winding drive of true poses 1 m apart, far from the map's origin.
+std::vector<Eigen::Isometry3d> drive(std::size_t count) {
+  std::vector<Eigen::Isometry3d> poses{pose(12000, -8000, 116, 0.3)};
+  while (poses.size() < count) poses.push_back(poses.back() * pose(1, 0, 0.01, 0.05 * std::sin(0.02 * double(poses.size()))));
+  return poses;
+}
+
+/// The same graph written the other way: automatic derivatives of quaternion expressions, no shared code with the library.
+struct AutoManifold {
+  template <class T>
+  bool Plus(const T* x, const T* d, T* y) const {
+    const Eigen::Map<const Eigen::Quaternion<T>> q(x);
+    const Eigen::Quaternion<T> turn(T(1), d[0] / T(2), d[1] / T(2), d[2] / T(2));
+    Eigen::Map<Eigen::Quaternion<T>>{y} = (q * turn).normalized();
+    Eigen::Map<Eigen::Matrix<T, 3, 1>>{y + 4} =
+        Eigen::Map<const Eigen::Matrix<T, 3, 1>>(x + 4) + q * Eigen::Matrix<T, 3, 1>(d[3], d[4], d[5]);
+    return true;
+  }
+  template <class T>
+  bool Minus(const T* y, const T* x, T* d) const {
+    const Eigen::Map<const Eigen::Quaternion<T>> qx(x), qy(y);
+    const Eigen::Quaternion<T> turn = qx.conjugate() * qy;
+    const Eigen::Matrix<T, 3, 1> t =
+        qx.conjugate() * (Eigen::Map<const Eigen::Matrix<T, 3, 1>>(y + 4) - Eigen::Map<const Eigen::Matrix<T, 3, 1>>(x + 4));
+    for (int i = 0; i < 3; ++i) d[i] = T(2) * turn.vec()[i], d[i + 3] = t[i];
+    return true;
+  }
+};
+
+struct AutoBetween {
+  Eigen::Quaterniond q_m;
+  Eigen::Vector3d t_m;
+  Matrix6d U;
+  template <class T>
+  bool operator()(const T* a, const T* b, T* r) const {
+    const Eigen::Map<const Eigen::Quaternion<T>> qa(a), qb(b);
+    const Eigen::Map<const Eigen::Matrix<T, 3, 1>> ta(a + 4), tb(b + 4);
+    const Eigen::Quaternion<T> turn = q_m.conjugate().cast<T>() * qa.conjugate() * qb;
+    Eigen::Matrix<T, 6, 1> e;
+    e.template head<3>() = T(2) * turn.vec() / turn.w();  // equals the logarithm to second order
+    e.template tail<3>() = q_m.conjugate().cast<T>() * (qa.conjugate() * (tb - ta) - t_m.cast<T>());
+    Eigen::Map<Eigen::Matrix<T, 6, 1>>{r} = U.cast<T>() * e;
+    return true;
+  }
+};
+
+struct AutoAbsolute {
+  AutoBetween between;
+  template <class T>
+  bool operator()(const T* x, T* r) const {
+    const T identity[7] = {T(0), T(0), T(0), T(1), T(0), T(0), T(0)};
+    return between(identity, x, r);
+  }
+};
+
+AutoBetween auto_between(const Eigen::Isometry3d& measured, const Matrix6d& info) {
+  return {Eigen::Quaterniond(measured.linear()), measured.translation(), Eigen::LLT<Matrix6d>(info).matrixU()};
+}
+
+TEST(PoseGraph, MarginalsEqualThoseOfCeres) {
+  std::mt19937 random(5);
+  const auto truth = drive(120);
+  PoseGraph graph({.absolute_width = 0, .between_width = 0});
+  for (const auto& T : truth) graph.add_pose(T);
+  for (std::size_t k = 1; k < truth.size(); ++k) graph.add_between(k - 1, k, truth[k - 1].inverse() * truth[k], random_information(random));
+  graph.add_between(3, 100, truth[3].inverse() * truth[100], random_information(random));  // a loop: more than a chain
+  for (std::size_t k = 0; k < truth.size(); k += 17) graph.add_absolute(k, truth[k], random_information(random));
+  const auto covariances = graph.marginal_covariances();
+
+  ceres::Problem problem;
+  std::vector<std::array<double, 7>> x(truth.size());
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    Eigen::Map<Eigen::Quaterniond>{x[k].data()} = Eigen::Quaterniond(truth[k].linear());
+    Eigen::Map<Eigen::Vector3d>{x[k].data() + 4} = truth[k].translation();
+    problem.AddParameterBlock(x[k].data(), 7, new ceres::AutoDiffManifold<AutoManifold, 7, 6>);
+  }
+  for (const auto& f : graph.between_factors())
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AutoBetween, 6, 7, 7>(new AutoBetween(auto_between(f.T_a_b, f.information))),
+                             nullptr, x[f.a].data(), x[f.b].data());
+  for (const auto& f : graph.absolute_factors())
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<AutoAbsolute, 6, 7>(new AutoAbsolute{auto_between(f.T_map_sensor, f.information)}), nullptr,
+        x[f.id].data());
+  ceres::Covariance covariance({});
+  std::vector<std::pair<const double*, const double*>> wanted;
+  for (auto& p : x) wanted.emplace_back(p.data(), p.data());
+  ASSERT_TRUE(covariance.Compute(wanted, &problem));
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    Eigen::Matrix<double, 6, 6, Eigen::RowMajor> expected;
+    covariance.GetCovarianceBlockInTangentSpace(x[k].data(), x[k].data(), expected.data());
+    EXPECT_LT((covariances[k] - expected).norm(), 1e-6 * expected.norm()) << "pose " << k;
+  }
+}
+
+TEST(PoseGraph, AbsoluteConstraintsTakeTheDriftOutOfAChain) {
+  std::mt19937 random(6);
+  const auto truth = drive(400);
+  PoseGraph graph({.absolute_width = 0, .between_width = 0});  // the drift lies outside any Tukey kernel
+  graph.add_pose(truth[0]);
+  for (std::size_t k = 1; k < truth.size(); ++k) {
+    const auto measured = noisy(truth[k - 1].inverse() * truth[k], random, 0.002, 0.01);
+    graph.add_pose(graph.pose(k - 1) * measured);
+    graph.add_between(k - 1, k, measured, information(0.002, 0.01));
+  }
+  const double drift = (graph.pose(399).translation() - truth[399].translation()).norm();
+  for (std::size_t k = 0; k < truth.size(); k += 20) graph.add_absolute(k, noisy(truth[k], random, 0.005, 0.05), information(0.005, 0.05));
+  EXPECT_TRUE(graph.optimize().converged);
+  const auto covariances = graph.marginal_covariances();
+  double worst = 0, nees = 0;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    const Vector6d error = local_coordinates(graph.pose(k), truth[k]);
+    worst = std::max(worst, error.tail<3>().norm());
+    nees += error.dot(covariances[k].llt().solve(error)) / double(truth.size());
+  }
+  EXPECT_GT(drift, 0.5);
+  EXPECT_LT(worst, 0.3);
+  EXPECT_NEAR(nees, 6, 3);  // six degrees of freedom, 20 independent anchors
+}
+
+TEST(PoseGraph, ATukeyKernelIgnoresAFalseAbsoluteConstraint) {
+  PoseGraph graph({.absolute_width = 4.0});
+  for (int k = 0; k < 5; ++k) {
+    graph.add_pose(pose(k, 0, 0));
+    graph.add_absolute(PoseId(k), pose(k, k == 2 ? 3.0 : 0.0, 0), information(0.01, 0.1));  // pose 2: 30 sigma aside
+    if (k > 0) graph.add_between(PoseId(k - 1), PoseId(k), pose(1, 0, 0), information(0.01, 0.1));
+  }
+  graph.optimize();
+  for (int k = 0; k < 5; ++k) EXPECT_NEAR(graph.pose(PoseId(k)).translation().y(), 0, 1e-6);
+  EXPECT_EQ(graph.absolute_weights()[2], 0.0);
+  EXPECT_GT(graph.absolute_weights()[1], 0.99);
+}
+
+TEST(PoseGraph, TheLastPoseAloneMovesFrameByFrame) {
+  PoseGraph graph({.absolute_width = 0, .between_width = 0});
+  graph.add_pose(pose(0, 0, 0));
+  graph.add_pose(pose(1.2, 0, 0));
+  graph.add_between(0, 1, pose(1, 0, 0), information(0.1, 1.0));
+  graph.add_absolute(1, pose(2, 0, 0), information(0.1, 1.0));
+  graph.optimize_last();
+  EXPECT_EQ(graph.pose(0).translation().x(), 0.0);
+  EXPECT_NEAR(graph.pose(1).translation().x(), 1.5, 1e-9);  // equal weights: half way
+  graph.optimize_last(2);
+  EXPECT_NEAR(graph.pose(1).translation().x(), 2.0, 1e-6);  // pose 0 free, held by nothing: both constraints are met
+  EXPECT_NEAR(graph.pose(0).translation().x(), 1.0, 1e-6);
+}
+
+TEST(PoseGraph, WithoutAnAbsoluteConstraintTheFirstPoseStays) {
+  PoseGraph graph;
+  graph.add_pose(pose(5, 6, 7, 1));
+  graph.add_pose(pose(0, 0, 0));
+  graph.add_between(0, 1, pose(1, 0, 0), information(0.01, 0.5));
+  graph.optimize();
+  EXPECT_TRUE(graph.pose(0).isApprox(pose(5, 6, 7, 1)));
+  EXPECT_TRUE(graph.pose(1).isApprox(pose(5, 6, 7, 1) * pose(1, 0, 0), 1e-6));
+  const auto covariances = graph.marginal_covariances();
+  EXPECT_EQ(covariances[0].norm(), 0.0);
+  EXPECT_NEAR(covariances[1](3, 3), 0.25, 1e-6);
+}
+
+TEST(PoseGraph, AnUnobservedDirectionStaysFreeAndCorrelationsKeepTheirSign) {
+  // An absolute constraint across a street that runs at 45 degrees: x and y are correlated, along the street nothing is known.
+  Matrix6d across = information(0.01, 0.1);
+  const Eigen::Vector3d n = Eigen::Vector3d(1, -1, 0).normalized();
+  across.bottomRightCorner<3, 3>() = 100.0 * n * n.transpose();
+  across(5, 5) = 100.0;
+  PoseGraph graph({.absolute_width = 0, .between_width = 0});
+  graph.add_pose(pose(0, 0, 0));
+  graph.add_absolute(0, pose(0, 0, 0), information(1e-3, 1e-3));
+  graph.add_pose(pose(2, 0, 0));
+  graph.add_between(0, 1, pose(2, 0, 0), information(0.1, 10.0));
+  graph.add_absolute(1, pose(1, 1, 0), across);
+  graph.optimize();
+  EXPECT_NEAR(graph.pose(1).translation().x(), 1, 1e-2);  // pulled perpendicular to the street onto the line x = y
+  EXPECT_NEAR(graph.pose(1).translation().y(), 1, 1e-2);
+}
+
+TEST(PoseGraph, RefusesUnknownPosesAndBrokenInformation) {
+  PoseGraph graph;
+  graph.add_pose(pose(0, 0, 0));
+  EXPECT_THROW(graph.add_absolute(1, pose(0, 0, 0), Matrix6d::Identity()), UsageError);
+  EXPECT_THROW(graph.add_between(0, 0, pose(0, 0, 0), Matrix6d::Identity()), UsageError);
+  EXPECT_THROW(graph.add_absolute(0, pose(0, 0, 0), -Matrix6d::Identity()), UsageError);
+  EXPECT_THROW(graph.add_absolute(0, pose(0, 0, 0), Matrix6d::Constant(std::nan(""))), UsageError);
+}
+
+}  // namespace
