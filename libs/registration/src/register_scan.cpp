@@ -59,7 +59,7 @@ NormalEquations linearize(const PointCloud& points, const VoxelHashMap& target, 
   });
   NormalEquations sum;
   for (const auto& chunk : chunks) sum += chunk;
-  sum.H.bottomLeftCorner<3, 3>() = sum.H.topRightCorner<3, 3>().transpose();
+  sum.H = Matrix6d(sum.H.selfadjointView<Eigen::Upper>());
   return sum;
 }
 

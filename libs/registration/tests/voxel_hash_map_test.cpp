@@ -36,7 +36,9 @@ TEST(VoxelHashMap, NearestEqualsASearchOfAllPointsInThe27Voxels) {
     }
     const auto found = map.nearest(p);
     ASSERT_EQ(found.has_value(), best < 1e300);
-    if (found) EXPECT_NEAR(found->distance_m, best, 1e-5);
+    if (found) {
+      EXPECT_NEAR(found->distance_m, best, 1e-5);
+    }
   }
 }
 
