@@ -84,7 +84,8 @@ TEST(CityGml, AnOrientedSurfaceTurnsItsPolygonOver) {
   const std::string turned = "<gml:surfaceMember><gml:OrientableSurface orientation='-'><gml:baseSurface>" + square("", 0) +
                              "</gml:baseSurface></gml:OrientableSurface></gml:surfaceMember>";
   const auto models = read(document(building(solid(turned))));
-  EXPECT_LT(newell_normal(models[0].polygons[0].polygon.exterior).z(), 0);
+  const Ring3& ring = models[0].polygons[0].polygon.exterior;
+  EXPECT_LT((ring[1] - ring[0]).cross(ring[2] - ring[0]).z(), 0);
 }
 
 TEST(CityGml, ImplicitGeometryIsPlacedByMatrixAndReferencePointAndSharedById) {

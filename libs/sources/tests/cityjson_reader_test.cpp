@@ -40,7 +40,7 @@ TEST(CityJson, AmongLevelsOfOneMajorNumberTheFinestCounts) {
     "p":{"type":"BuildingPart","parents":["b"],"geometry":[
       {"type":"Solid","lod":"1.2","boundaries":[[[[0,1,2]]]]},
       {"type":"Solid","lod":"1.3","boundaries":[[[[0,1,2]],[[0,2,3]]]]},
-      {"type":"Solid","lod":"2.2","boundaries":[[[[0,1,2,3]],[[0,1,4]],[[1,2,4]]]],"semantics":{"surfaces":[{"type":"GroundSurface"},{"type":"WallSurface"}],"values":[[0,1,null]]}}]}}})" + "}";
+      {"type":"Solid","lod":"2.2","boundaries":[[[[0,1,2,3]],[[0,1,4]],[[1,2,4]]]],"semantics":{"surfaces":[{"type":"GroundSurface"},{"type":"WallSurface"}],"values":[[0,1,null]]}}]}}})";
   const auto best = read(text);
   ASSERT_EQ(best.size(), 1u);
   EXPECT_EQ(best[0].id, "b");
@@ -55,7 +55,7 @@ TEST(CityJson, TemplatesArePlacedAndTinReliefIsTerrain) {
   const std::string text = "{" + head + "," + vertices + R"(,"geometry-templates":{"templates":[{"type":"MultiSurface","lod":"3","boundaries":[[[0,1,2]]]}],
     "vertices-templates":[[0,0,0],[1,0,0],[0,1,0]]},"CityObjects":{
     "b":{"type":"Building","geometry":[{"type":"GeometryInstance","template":0,"boundaries":[1],"transformationMatrix":[2,0,0,0, 0,2,0,0, 0,0,2,0, 0,0,0,1]}]},
-    "t":{"type":"TINRelief","geometry":[{"type":"CompositeSurface","lod":"1","boundaries":[[[0,1,2]]]}]}}})" + "}";
+    "t":{"type":"TINRelief","geometry":[{"type":"CompositeSurface","lod":"1","boundaries":[[[0,1,2]]]}]}}})";
   const auto models = read(text);
   ASSERT_EQ(models.size(), 2u);
   EXPECT_NEAR(polygon_area(models[0].polygons[0].polygon), 2.0, 1e-6);
