@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include <priormap/geodesy/tile_grid.hpp>
 #include <priormap/geodesy/transformer.hpp>
+#include <priormap/prior/tile_index.hpp>
 
 namespace priormap {
 
@@ -23,6 +23,7 @@ struct PriorSource {
   std::string assumed_vertical; ///< vertical CRS taken on the user's word; empty: none
   CoordinateOperation operation;
   std::optional<double> sigma_m;          ///< a priori position accuracy of its points
+  int precedence = 0;          ///< of a merged prior: sources with a lower number displaced points of those with a higher one
   std::vector<std::pair<std::string, std::string>> facts;  ///< counts and rules for the reader: "buildings" = "494", ...
 };
 
@@ -36,20 +37,27 @@ struct PriorManifest {
   std::uint64_t num_points = 0;
   std::uint64_t num_features = 0;
   Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();
-  std::string tiles_sha256;              ///< of tiles.idx
-  std::string features_sha256;
+  std::uint64_t num_tiles = 0;
+  TileIndexDigest tiles;                 ///< of tiles.idx
+  std::string features_crs;              ///< of the geometry in features.geojsonl: "EPSG:4326" where an operation to it is known
+  std::string features_sha256;           ///< of features.geojsonl
   std::string generator;                 ///< "osm2prior 0.1.0"
-};
-
-/// One row of tiles.idx.
-struct TileEntry {
-  TileKey key;
-  std::uint64_t num_points = 0;
-  float min_z = 0, max_z = 0;
-  std::string sha256;                    ///< of the tile file
 };
 
 /// @throws FormatError naming the field that violates schemas/prior-manifest.schema.json; IoError
 PriorManifest read_manifest(const std::filesystem::path& prior_directory);
+
+/// The text of prior.json: the same manifest gives the same bytes.
+std::string manifest_json(const PriorManifest& manifest);
+
+/// The text of ATTRIBUTION.txt: who must be named, and under which licences the data stands.
+std::string attribution_text(const PriorManifest& manifest);
+
+/// The files of a prior directory.
+inline constexpr const char* manifest_file_name = "prior.json";
+inline constexpr const char* tile_index_file_name = "tiles.idx";
+inline constexpr const char* features_file_name = "features.geojsonl";
+inline constexpr const char* attribution_file_name = "ATTRIBUTION.txt";
+inline constexpr const char* tiles_folder_name = "tiles";
 
 }  // namespace priormap
