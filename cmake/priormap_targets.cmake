@@ -38,6 +38,9 @@ endif()
 install(TARGETS priormap_flags EXPORT priormapTargets)
 add_library(priormap::flags ALIAS priormap_flags)
 
+# A program loads only the shared libraries it calls: PCL's I/O alone brings 60.
+add_link_options(LINKER:--as-needed)
+
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 

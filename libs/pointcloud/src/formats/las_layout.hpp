@@ -1,19 +1,16 @@
 #pragma once
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 
+#include "formats/scalar_type.hpp"
+
 namespace priormap::las {
 
-// Field positions of ASPRS LAS 1.4 R15. LAS is little-endian and so is every machine that priormap is built for.
-static_assert(std::endian::native == std::endian::little);
-
+// Field positions and lengths of ASPRS LAS 1.4 R15.
 inline constexpr std::size_t header_size_1_2 = 227, header_size_1_3 = 235, header_size_1_4 = 375;
 inline constexpr std::size_t vlr_header_size = 54, evlr_header_size = 60, extra_bytes_record_size = 192;
 inline constexpr std::uint16_t wkt_encoding_bit = 1 << 4;
@@ -26,29 +23,10 @@ inline constexpr std::size_t base_record_length(int point_format) {
 }
 inline constexpr bool is_extended(int point_format) { return point_format >= 6; }
 
-template <class T>
-T load(const std::byte* at) {
-  T value;
-  std::memcpy(&value, at, sizeof value);
-  return value;
-}
-template <class T>
-void store(std::byte* at, T value) {
-  std::memcpy(at, &value, sizeof value);
-}
-
-/// Data types of the Extra Bytes record (table 24).
-enum class ExtraType : std::uint8_t { uint8 = 1, int8, uint16, int16, uint32, int32, uint64, int64, float32, float64 };
-
-inline constexpr std::size_t size_of(ExtraType type) {
-  constexpr std::array<std::size_t, 11> sizes = {0, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
-  return sizes[static_cast<std::size_t>(type)];
-}
-
 /// One extra value a point: its meaning in the file and its place in the record.
 struct ExtraField {
   std::string name;
-  ExtraType type = ExtraType::uint8;
+  ScalarType type = ScalarType::uint8;
   double scale = 1, offset = 0;
   std::optional<double> no_data;
   std::size_t position = 0;  ///< from the start of the point record

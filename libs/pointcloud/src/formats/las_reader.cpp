@@ -190,7 +190,7 @@ std::string crs_of_records(ByteSource& file, const std::vector<Record>& records,
 std::size_t skipped_size(std::uint8_t type, std::uint8_t options) {
   if (type == 0) return options;
   const int members = type <= 20 ? 2 : 3;
-  return static_cast<std::size_t>(members) * size_of(static_cast<ExtraType>((type - 1) % 10 + 1));
+  return static_cast<std::size_t>(members) * size_of(static_cast<ScalarType>((type - 1) % 10 + 1));
 }
 
 std::vector<ExtraField> parse_extra_bytes(ByteSource& file, const Record& record, const Layout& layout) {
@@ -203,7 +203,7 @@ std::vector<ExtraField> parse_extra_bytes(ByteSource& file, const Record& record
     if (type > 30) file.fail("LAS extra bytes of unknown type " + std::to_string(type));
     const bool is_number = type >= 1 && type <= 10;
     if (is_number) {
-      ExtraField field{text(entry + 4, 32), static_cast<ExtraType>(type), 1, 0, std::nullopt, position};
+      ExtraField field{text(entry + 4, 32), static_cast<ScalarType>(type), 1, 0, std::nullopt, position};
       const bool is_float = type >= 9, is_signed = type % 2 == 0;
       if (options & 1)
         field.no_data = is_float    ? load<double>(entry + 40)
@@ -213,7 +213,7 @@ std::vector<ExtraField> parse_extra_bytes(ByteSource& file, const Record& record
       if (options & 16) field.offset = load<double>(entry + 136);
       fields.push_back(std::move(field));
     }
-    position += is_number ? size_of(static_cast<ExtraType>(type)) : skipped_size(type, options);
+    position += is_number ? size_of(static_cast<ScalarType>(type)) : skipped_size(type, options);
   }
   if (position > layout.record_length)
     file.fail("the LAS extra bytes need records of " + std::to_string(position) + " bytes, the records have " +
@@ -243,22 +243,6 @@ Layout read_layout(ByteSource& file) {
 const ExtraField* find(const std::vector<ExtraField>& fields, std::string_view name) {
   const auto found = std::find_if(fields.begin(), fields.end(), [&](const ExtraField& f) { return f.name == name; });
   return found == fields.end() ? nullptr : &*found;
-}
-
-template <class Visitor>
-void with_type(ExtraType type, Visitor&& visit) {
-  switch (type) {
-    case ExtraType::uint8: return visit(std::uint8_t{});
-    case ExtraType::int8: return visit(std::int8_t{});
-    case ExtraType::uint16: return visit(std::uint16_t{});
-    case ExtraType::int16: return visit(std::int16_t{});
-    case ExtraType::uint32: return visit(std::uint32_t{});
-    case ExtraType::int32: return visit(std::int32_t{});
-    case ExtraType::uint64: return visit(std::uint64_t{});
-    case ExtraType::int64: return visit(std::int64_t{});
-    case ExtraType::float32: return visit(float{});
-    case ExtraType::float64: return visit(double{});
-  }
 }
 
 /// A block of point records in memory.

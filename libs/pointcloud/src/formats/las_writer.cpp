@@ -6,11 +6,11 @@
 #include <string>
 
 #include <priormap/core/error.hpp>
+#include <priormap/core/output_file.hpp>
 #include <priormap/core/version.hpp>
 #include <priormap/pointcloud/las.hpp>
 
 #include "formats/las_layout.hpp"
-#include "formats/write_bytes.hpp"
 
 namespace priormap {
 namespace {
@@ -24,19 +24,19 @@ constexpr std::uint16_t unknown_sigma = 65535;
 std::vector<ExtraField> plan_extra_fields(const PointCloud& points, std::size_t base_length) {
   std::vector<ExtraField> fields;
   std::size_t position = base_length;
-  const auto add = [&](std::string_view name, ExtraType type, double scale = 1, std::optional<double> no_data = std::nullopt) {
+  const auto add = [&](std::string_view name, ScalarType type, double scale = 1, std::optional<double> no_data = std::nullopt) {
     fields.push_back({std::string(name), type, scale, 0, no_data, position});
     position += size_of(type);
   };
   // The LAS intensity field is a 16-bit integer; other values are kept beside it.
   const auto fits_las_intensity = [](float v) { return v >= 0 && v <= 65535 && v == std::floor(v); };
   if (!points.normal.empty())
-    for (const auto name : normal_names) add(name, ExtraType::int16, 1 / normal_steps);
-  if (!points.sigma_m.empty()) add(sigma_name, ExtraType::uint16, 1 / sigma_steps_per_m, unknown_sigma);
-  if (!points.source.empty()) add(source_name, ExtraType::uint16);
-  if (!points.feature.empty()) add(feature_name, ExtraType::uint32, 1, PointCloud::no_feature);
-  if (!std::all_of(points.intensity.begin(), points.intensity.end(), fits_las_intensity)) add(intensity_name, ExtraType::float32);
-  if (!points.time_s.empty()) add(time_name, ExtraType::float32);
+    for (const auto name : normal_names) add(name, ScalarType::int16, 1 / normal_steps);
+  if (!points.sigma_m.empty()) add(sigma_name, ScalarType::uint16, 1 / sigma_steps_per_m, unknown_sigma);
+  if (!points.source.empty()) add(source_name, ScalarType::uint16);
+  if (!points.feature.empty()) add(feature_name, ScalarType::uint32, 1, PointCloud::no_feature);
+  if (!std::all_of(points.intensity.begin(), points.intensity.end(), fits_las_intensity)) add(intensity_name, ScalarType::float32);
+  if (!points.time_s.empty()) add(time_name, ScalarType::float32);
   return fields;
 }
 
@@ -255,7 +255,10 @@ std::vector<std::byte> encode_las(const PointCloud& points, const LasWriteOption
 }
 
 void write_las(const std::filesystem::path& file, const PointCloud& points, const LasWriteOptions& options) {
-  write_bytes(file, encode_las(points, options));
+  const std::vector<std::byte> bytes = encode_las(points, options);
+  OutputFile out(file);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  out.close();
 }
 
 }  // namespace priormap

@@ -18,7 +18,7 @@ struct CloudFile {
 enum class PcdEncoding { ascii, binary, binary_compressed };
 
 struct CloudWriteOptions {
-  std::string crs;                                    ///< WKT1 for LAS; into .georef.json beside PCD, PLY and XYZ; empty: none
+  std::string crs = {};                               ///< WKT1 for LAS; into .georef.json beside PCD, PLY and XYZ; empty: none
   PcdEncoding encoding = PcdEncoding::binary_compressed;   ///< PCD; PLY: ascii or binary
   double resolution_m = 0.001;                        ///< LAS scale
   Overwrite overwrite = Overwrite::refuse;
@@ -32,6 +32,9 @@ CloudFile read_point_cloud(const std::filesystem::path& file);
 /// Writes by extension; PCD, PLY, XYZ hold positions relative to `points.origin` with the origin in `.georef.json` when the origin is
 /// not zero or a CRS is given. Whole or not at all. @throws IoError, UsageError for an unknown extension.
 void write_point_cloud(const std::filesystem::path& file, const PointCloud& points, const CloudWriteOptions& options = {});
+
+/// "map.pcd" -> "map.pcd.georef.json"
+std::filesystem::path georeference_path(const std::filesystem::path& file);
 
 /// Extensions that can be read / written, for messages and --help.
 const std::vector<std::string>& readable_cloud_extensions();

@@ -1,0 +1,36 @@
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <priormap/tessellation/polygon.hpp>
+#include <priormap/tessellation/surface.hpp>
+
+namespace priormap {
+
+/// One polygon of a building model, as its file states it.
+struct ModelPolygon {
+  Polygon3 polygon;                                         ///< counter-clockwise seen from outside, in the file's axis order and units
+  SurfaceClass surface_class = SurfaceClass::unclassified;  ///< unclassified: the file names no boundary surface
+  bool closed = true;                                       ///< every ring repeated its first point (CityJSON: by definition)
+};
+
+/// One building of CityGML or CityJSON with its parts, or a terrain TIN, at one level of detail.
+struct BuildingModel {
+  std::string id;          ///< gml:id or CityJSON key; "feature-N" where the file gives none
+  int lod = 0;             ///< the highest major level among its polygons
+  bool terrain = false;    ///< a TINRelief
+  std::string srs_name;    ///< as the file writes it, inherited from any level; empty: none
+  std::vector<ModelPolygon> polygons;
+  std::size_t unresolved_references = 0;   ///< xlinks to ids that the file does not hold
+};
+
+struct BuildingModelOptions {
+  std::optional<int> lod;  ///< only this level; default: of the building and each part the highest it has
+};
+
+using BuildingModelSink = std::function<void(BuildingModel&&)>;
+
+}  // namespace priormap

@@ -1,0 +1,42 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <priormap/tessellation/polygon.hpp>
+
+namespace priormap {
+
+/// Roof shapes of the OSM wiki's "Simple 3D buildings"; `other` is one that priormap does not build.
+enum class RoofShape : std::uint8_t { flat, gabled, hipped, half_hipped, pyramidal, skillion, gambrel, mansard, round, cone, dome, onion, other };
+
+/// What a source says about the shape of a building or of a part of one; absent where it says nothing.
+struct BuildingAttributes {
+  std::optional<double> height_m;        ///< of the top, roof included, above the ground
+  std::optional<double> min_height_m;    ///< of the lowest wall edge above the ground
+  std::optional<double> levels;          ///< storeys above the ground, without those in the roof
+  std::optional<double> min_level;       ///< storeys left open below
+  std::optional<double> roof_levels;
+  std::optional<double> roof_height_m;
+  std::optional<double> roof_angle_deg;      ///< slope
+  std::optional<double> roof_direction_deg;  ///< down the slope, clockwise from north
+  RoofShape roof_shape = RoofShape::flat;
+  bool ridge_across = false;  ///< the ridge runs along the shorter side
+  bool has_walls = true;      ///< false: a roof on posts
+};
+
+/// The outline of a building or of a part of one, as a source gives it.
+struct Footprint {
+  enum class Kind : std::uint8_t { outline, part };
+  static constexpr std::uint32_t no_building = 0xffffffffu;
+
+  std::string id;             ///< in the source: "way/123", "relation/7"
+  std::vector<Ring2> rings;   ///< even-odd: holes and several polygons in any order; in the source's CRS, east before north
+  BuildingAttributes attributes;
+  Kind kind = Kind::outline;
+  std::uint32_t building = no_building;  ///< outline and parts that the source ties together carry the same number
+  std::uint16_t file = 0;                ///< index of the input file
+};
+
+}  // namespace priormap

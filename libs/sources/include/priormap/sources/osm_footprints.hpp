@@ -1,0 +1,21 @@
+#pragma once
+#include <filesystem>
+#include <vector>
+
+#include <priormap/core/diagnostics.hpp>
+#include <priormap/core/events.hpp>
+#include <priormap/sources/footprint.hpp>
+
+namespace priormap {
+
+/// Buildings and building parts of OSM files (.osm, .osm.gz, .osm.bz2, .osm.pbf): closed ways, multipolygon relations with holes, and relations of
+/// type building that tie outlines and parts together. Longitude, latitude [degrees, WGS 84]. All files together are one data set: an object that
+/// several of them hold counts once (its first file is named), and ways may find their nodes in another file. Ordered by id: the order of the files does not matter.
+///
+/// Reads each file three times (relations, ways, nodes), so that only what buildings need is held.
+/// Broken rings and members that no file holds are counted (103, 206, 701) and left out.
+/// @throws IoError, FormatError naming the file
+std::vector<Footprint> read_osm_footprints(const std::vector<std::filesystem::path>& files, int threads, Diagnostics& diagnostics,
+                                           const Events& events = {});
+
+}  // namespace priormap

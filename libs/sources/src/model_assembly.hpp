@@ -1,0 +1,49 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include <priormap/sources/building_model.hpp>
+
+namespace priormap {
+
+/// Where a polygon or a reference stands inside a building.
+struct GeometryContext {
+  int object = 0;              ///< 0: the building itself, 1...: its parts
+  int lod = 0;                 ///< ten times the level: 20 for "2", 22 for "2.2"
+  SurfaceClass surface_class = SurfaceClass::unclassified;
+  bool thematic = false;       ///< below a boundary surface, opening or installation
+  bool flip = false;           ///< below an oriented surface with orientation "-"
+};
+
+/// What a geometry element lists: a polygon stated here, or the id of one (or of a surface or solid) stated elsewhere.
+struct GeometryItem {
+  GeometryContext context;
+  ModelPolygon polygon;        ///< empty for a reference
+  std::string reference;       ///< without '#'; empty for a polygon
+  std::optional<Eigen::Affine3d> placement;   ///< of a reference to a template (implicit geometry): T_model_template
+};
+
+/// Polygons and references in the order of the file; ids of polygons, surfaces and solids stand for ranges of them.
+struct GeometryItems {
+  struct Range { std::size_t begin, end; };
+  std::vector<GeometryItem> items;
+  std::unordered_map<std::string, Range> ranges;
+};
+
+void place(Polygon3& polygon, const Eigen::Affine3d& T_model_template);
+
+/// Ids referred to but not stated among the items.
+std::vector<std::string> missing_references(const GeometryItems& geometry);
+
+/// Resolves references (`shared` holds what is stated outside the building), chooses the level of detail of the building and
+/// of each part, and drops repeated polygons. Fills `model.polygons`, `model.lod` and `model.unresolved_references`.
+void assemble(GeometryItems geometry, const GeometryItems& shared, const BuildingModelOptions& options, BuildingModel& model);
+
+/// Boundary surface names of CityGML 1 to 3 and CityJSON, such as "WallSurface"; nullopt for other names.
+std::optional<SurfaceClass> surface_class_of(std::string_view local_name);
+
+}  // namespace priormap

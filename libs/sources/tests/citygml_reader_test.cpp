@@ -1,0 +1,164 @@
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <priormap/core/error.hpp>
+#include <priormap/sources/citygml_reader.hpp>
+
+#include "model_test_support.hpp"
+
+namespace priormap {
+namespace {
+
+std::string document(const std::string& members, const std::string& srs = "EPSG:25832") {
+  return "<?xml version='1.0'?><core:CityModel xmlns:core='http://www.opengis.net/citygml/2.0' xmlns:bldg='http://www.opengis.net/citygml/building/2.0' "
+         "xmlns:gml='http://www.opengis.net/gml' xmlns:xlink='http://www.w3.org/1999/xlink'>"
+         "<gml:boundedBy><gml:Envelope srsName='" + srs + "'/></gml:boundedBy>" + members + "</core:CityModel>";
+}
+std::string building(const std::string& content, const std::string& id = "b1") {
+  return "<core:cityObjectMember><bldg:Building gml:id='" + id + "'>" + content + "</bldg:Building></core:cityObjectMember>";
+}
+/// A unit square at height z; `id` may be empty.
+std::string square(const std::string& id, double z, double size = 1) {
+  const std::string a = std::to_string(size), h = std::to_string(z);
+  return "<gml:Polygon" + (id.empty() ? "" : " gml:id='" + id + "'") + "><gml:exterior><gml:LinearRing><gml:posList>0 0 " + h + " " + a + " 0 " + h + " " + a + " " + a +
+         " " + h + " 0 " + a + " " + h + " 0 0 " + h + "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>";
+}
+std::string member(const std::string& geometry) { return "<gml:surfaceMember>" + geometry + "</gml:surfaceMember>"; }
+std::string link(const std::string& id) { return "<gml:surfaceMember xlink:href='#" + id + "'/>"; }
+std::string surface(const std::string& name, const std::string& geometry, int lod = 2) {
+  const std::string property = "bldg:lod" + std::to_string(lod) + "MultiSurface";
+  return "<bldg:boundedBy><bldg:" + name + "><" + property + "><gml:MultiSurface>" + geometry + "</gml:MultiSurface></" + property + "></bldg:" + name + "></bldg:boundedBy>";
+}
+std::string solid(const std::string& geometry, int lod = 2) {
+  const std::string property = "bldg:lod" + std::to_string(lod) + "Solid";
+  return "<" + property + "><gml:Solid><gml:exterior><gml:CompositeSurface>" + geometry + "</gml:CompositeSurface></gml:exterior></gml:Solid></" + property + ">";
+}
+
+std::vector<BuildingModel> read(const std::string& text, const BuildingModelOptions& options = {}) {
+  const TemporaryFile file(".gml", text);
+  std::vector<BuildingModel> models;
+  read_citygml(file.path(), options, [&](BuildingModel&& model) { models.push_back(std::move(model)); });
+  return models;
+}
+
+TEST(CityGml, APolygonThatSolidAndWallShareCountsOnceAsWall) {
+  for (const std::string& content : {surface("WallSurface", member(square("p", 0))) + solid(link("p")),      // stated by the wall
+                                     solid(member(square("p", 0))) + surface("WallSurface", link("p")),      // stated by the solid
+                                     solid(member(square("", 0))) + surface("WallSurface", member(square("", 0)))}) {   // stated twice
+    const auto models = read(document(building(content)));
+    ASSERT_EQ(models.size(), 1u);
+    ASSERT_EQ(models[0].polygons.size(), 1u) << content;
+    EXPECT_EQ(models[0].polygons[0].surface_class, SurfaceClass::wall);
+    EXPECT_EQ(models[0].unresolved_references, 0u);
+    EXPECT_EQ(models[0].srs_name, "EPSG:25832");
+    EXPECT_DOUBLE_EQ(polygon_area(models[0].polygons[0].polygon), 1.0);
+  }
+}
+
+TEST(CityGml, TheHighestLevelOfEachPartIsTakenUnlessOneIsAskedFor) {
+  const std::string part = "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id='part'>" + solid(member(square("", 5, 2)), 1) +
+                           surface("RoofSurface", member(square("", 7, 3))) + "</bldg:BuildingPart></bldg:consistsOfBuildingPart>";
+  const std::string text = document(building(solid(member(square("", 1)), 1) + part));
+  const auto best = read(text);
+  ASSERT_EQ(best[0].polygons.size(), 1u);   // the building's own LoD1 block repeats what its LoD2 part says better
+  EXPECT_EQ(best[0].lod, 2);
+  EXPECT_DOUBLE_EQ(polygon_area(best[0].polygons[0].polygon), 9.0);
+  EXPECT_EQ(read(text, {.lod = 1})[0].polygons.size(), 2u);
+}
+
+TEST(CityGml, ReferencesReachOtherBuildingsAndEndInCirclesOrNowhere) {
+  const std::string first = building(surface("WallSurface", link("far")), "b1");
+  const std::string second = building(surface("WallSurface", member(square("far", 3))), "b2");
+  const auto models = read(document(first + second));
+  ASSERT_EQ(models.size(), 2u);
+  for (const BuildingModel& model : models) EXPECT_EQ(model.polygons.size(), 1u) << model.id;
+
+  const std::string circle = "<gml:surfaceMember><gml:CompositeSurface gml:id='x'>" + link("y") + "</gml:CompositeSurface></gml:surfaceMember>"
+                             "<gml:surfaceMember><gml:CompositeSurface gml:id='y'>" + link("x") + "</gml:CompositeSurface></gml:surfaceMember>";
+  const auto odd = read(document(building(solid(circle + link("nowhere")))));
+  EXPECT_TRUE(odd[0].polygons.empty());
+  EXPECT_EQ(odd[0].unresolved_references, 1u);
+}
+
+TEST(CityGml, AnOrientedSurfaceTurnsItsPolygonOver) {
+  const std::string turned = "<gml:surfaceMember><gml:OrientableSurface orientation='-'><gml:baseSurface>" + square("", 0) +
+                             "</gml:baseSurface></gml:OrientableSurface></gml:surfaceMember>";
+  const auto models = read(document(building(solid(turned))));
+  const Ring3& ring = models[0].polygons[0].polygon.exterior;
+  EXPECT_LT((ring[1] - ring[0]).cross(ring[2] - ring[0]).z(), 0);
+}
+
+TEST(CityGml, ImplicitGeometryIsPlacedByMatrixAndReferencePointAndSharedById) {
+  auto placed = [](const std::string& geometry, int x) {
+    return "<bldg:outerBuildingInstallation><bldg:BuildingInstallation><bldg:lod3ImplicitRepresentation><core:ImplicitGeometry>"
+           "<core:transformationMatrix>2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1</core:transformationMatrix>" + geometry +
+           "<core:referencePoint><gml:Point><gml:pos>" + std::to_string(x) + " 0 10</gml:pos></gml:Point></core:referencePoint>"
+           "</core:ImplicitGeometry></bldg:lod3ImplicitRepresentation></bldg:BuildingInstallation></bldg:outerBuildingInstallation>";
+  };
+  const std::string stated = "<core:relativeGMLGeometry><gml:MultiSurface gml:id='shape'>" + member(square("", 1)) + "</gml:MultiSurface></core:relativeGMLGeometry>";
+  const std::string linked = "<core:relativeGMLGeometry xlink:href='#shape'/>";
+  for (const bool template_first : {true, false}) {
+    const std::string a = building(placed(stated, 100), "a"), b = building(placed(linked, 200) + placed(linked, 300), "b");
+    const auto models = read(document(template_first ? a + b : b + a));
+    ASSERT_EQ(models.size(), 2u);
+    std::vector<double> corners;
+    for (const BuildingModel& model : models) {
+      for (const ModelPolygon& p : model.polygons) {
+        EXPECT_DOUBLE_EQ(polygon_area(p.polygon), 4.0);
+        EXPECT_DOUBLE_EQ(p.polygon.exterior[0].z(), 12.0);
+        corners.push_back(p.polygon.exterior[0].x());
+      }
+    }
+    std::sort(corners.begin(), corners.end());
+    EXPECT_EQ(corners, (std::vector<double>{100, 200, 300}));
+  }
+}
+
+TEST(CityGml, HolesOldGmlSyntaxAndInnermostSrsNameAreRead) {
+  const std::string polygon = "<gml:Polygon srsName='EPSG:25833'><gml:outerBoundaryIs><gml:LinearRing><gml:coordinates>0,0,0 4,0,0 4,4,0 0,4,0 0,0,0</gml:coordinates>"
+                              "</gml:LinearRing></gml:outerBoundaryIs><gml:innerBoundaryIs><gml:LinearRing><gml:pos>1 1 0</gml:pos><gml:pos>1 2 0</gml:pos>"
+                              "<gml:pos>2 2 0</gml:pos><gml:pos>2 1 0</gml:pos></gml:LinearRing></gml:innerBoundaryIs></gml:Polygon>";
+  const auto models = read(document(building(solid(member(polygon)))));
+  ASSERT_EQ(models[0].polygons.size(), 1u);
+  EXPECT_DOUBLE_EQ(polygon_area(models[0].polygons[0].polygon), 15.0);
+  EXPECT_FALSE(models[0].polygons[0].closed);   // the hole does not repeat its first point
+  EXPECT_EQ(models[0].srs_name, "EPSG:25833");
+}
+
+TEST(CityGml, RoomsTerrainIntersectionsAndFootprintsAreLeftOut) {
+  const auto models = read(document(building(
+      "<bldg:lod0FootPrint><gml:MultiSurface>" + member(square("", 0)) + "</gml:MultiSurface></bldg:lod0FootPrint>"
+      "<bldg:interiorRoom><bldg:Room><bldg:lod4Solid><gml:Solid><gml:exterior>" + square("", 1) + "</gml:exterior></gml:Solid></bldg:lod4Solid></bldg:Room></bldg:interiorRoom>" +
+      surface("RoofSurface", member(square("", 9))))));
+  ASSERT_EQ(models[0].polygons.size(), 1u);
+  EXPECT_EQ(models[0].lod, 2);
+}
+
+TEST(CityGml, GzipIsReadAndDamageIsNamedByLine) {
+  const std::string text = document(building(solid(member(square("", 0)))));
+  const TemporaryFile packed(".gml.gz", "");
+  gzFile out = gzopen(packed.path().c_str(), "wb");
+  gzwrite(out, text.data(), static_cast<unsigned>(text.size()));
+  gzclose(out);
+  std::size_t polygons = 0;
+  read_citygml(packed.path(), {}, [&](BuildingModel&& model) { polygons += model.polygons.size(); });
+  EXPECT_EQ(polygons, 1u);
+
+  auto message = [](const std::string& broken) -> std::string {
+    try {
+      read(broken);
+      return "";
+    } catch (const FormatError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_NE(message(text.substr(0, text.size() / 2)).find("line 1"), std::string::npos);
+  EXPECT_NE(message("<html/>").find("no CityGML"), std::string::npos);
+  EXPECT_NE(message("<!DOCTYPE x [<!ENTITY a 'aaaaaaaaaa'><!ENTITY b '&a;&a;&a;'>]><CityModel>&b;</CityModel>").find("entity"), std::string::npos);
+  std::string deep = "<CityModel>";
+  for (int i = 0; i < 5000; ++i) deep += "<a>";
+  EXPECT_NE(message(deep).find("nested deeper"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace priormap

@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include <priormap/core/error.hpp>
+#include <priormap/sources/cityjson_reader.hpp>
+
+#include "model_test_support.hpp"
+
+namespace priormap {
+namespace {
+
+std::vector<BuildingModel> read(const std::string& text, const BuildingModelOptions& options = {}, const std::string& extension = ".json") {
+  const TemporaryFile file(extension, text);
+  std::vector<BuildingModel> models;
+  read_cityjson(file.path(), options, [&](BuildingModel&& model) { models.push_back(std::move(model)); });
+  return models;
+}
+
+const std::string vertices = R"("vertices":[[0,0,0],[1000,0,0],[1000,1000,0],[0,1000,0],[0,0,3000]])";
+const std::string head = R"("type":"CityJSON","version":"2.0","transform":{"scale":[0.001,0.001,0.001],"translate":[500000,5000000,100]},
+  "metadata":{"referenceSystem":"https://www.opengis.net/def/crs/EPSG/0/7415"})";
+
+TEST(CityJson, VerticesMayComeBeforeOrAfterTheObjects) {
+  const std::string objects = R"("CityObjects":{"b":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2.2","boundaries":[[[0,1,2,3]]],
+    "semantics":{"surfaces":[{"type":"RoofSurface"}],"values":[0]}}]}})";
+  for (const std::string& text : {"{" + head + "," + objects + "," + vertices + "}", "{" + vertices + "," + objects + "," + head + "}"}) {
+    const auto models = read(text);
+    ASSERT_EQ(models.size(), 1u);
+    EXPECT_EQ(models[0].lod, 2);
+    EXPECT_EQ(models[0].srs_name, "https://www.opengis.net/def/crs/EPSG/0/7415");
+    ASSERT_EQ(models[0].polygons.size(), 1u);
+    EXPECT_EQ(models[0].polygons[0].surface_class, SurfaceClass::roof);
+    EXPECT_NEAR(polygon_area(models[0].polygons[0].polygon), 1.0, 1e-6);
+    EXPECT_DOUBLE_EQ(models[0].polygons[0].polygon.exterior[2].x(), 500001.0);
+  }
+}
+
+TEST(CityJson, AmongLevelsOfOneMajorNumberTheFinestCounts) {
+  const std::string text = "{" + head + "," + vertices + R"(,"CityObjects":{
+    "b":{"type":"Building","children":["p"],"geometry":[{"type":"MultiSurface","lod":"0","boundaries":[[[0,1,2,3]]]}]},
+    "p":{"type":"BuildingPart","parents":["b"],"geometry":[
+      {"type":"Solid","lod":"1.2","boundaries":[[[[0,1,2]]]]},
+      {"type":"Solid","lod":"1.3","boundaries":[[[[0,1,2]],[[0,2,3]]]]},
+      {"type":"Solid","lod":"2.2","boundaries":[[[[0,1,2,3]],[[0,1,4]],[[1,2,4]]]],"semantics":{"surfaces":[{"type":"GroundSurface"},{"type":"WallSurface"}],"values":[[0,1,null]]}}]}}})";
+  const auto best = read(text);
+  ASSERT_EQ(best.size(), 1u);
+  EXPECT_EQ(best[0].id, "b");
+  EXPECT_EQ(best[0].polygons.size(), 3u);
+  EXPECT_EQ(read(text, {.lod = 1})[0].polygons.size(), 2u);
+  const auto areas = area_by_class(best);
+  EXPECT_NEAR(areas.at(SurfaceClass::ground_surface), 1.0, 1e-6);
+  EXPECT_NEAR(areas.at(SurfaceClass::wall), 1.5, 1e-6);
+}
+
+TEST(CityJson, TemplatesArePlacedAndTinReliefIsTerrain) {
+  const std::string text = "{" + head + "," + vertices + R"(,"geometry-templates":{"templates":[{"type":"MultiSurface","lod":"3","boundaries":[[[0,1,2]]]}],
+    "vertices-templates":[[0,0,0],[1,0,0],[0,1,0]]},"CityObjects":{
+    "b":{"type":"Building","geometry":[{"type":"GeometryInstance","template":0,"boundaries":[1],"transformationMatrix":[2,0,0,0, 0,2,0,0, 0,0,2,0, 0,0,0,1]}]},
+    "t":{"type":"TINRelief","geometry":[{"type":"CompositeSurface","lod":"1","boundaries":[[[0,1,2]]]}]}}})";
+  const auto models = read(text);
+  ASSERT_EQ(models.size(), 2u);
+  EXPECT_NEAR(polygon_area(models[0].polygons[0].polygon), 2.0, 1e-6);
+  EXPECT_DOUBLE_EQ(models[0].polygons[0].polygon.exterior[0].x(), 500001.0);
+  EXPECT_TRUE(models[1].terrain);
+  EXPECT_EQ(models[1].polygons[0].surface_class, SurfaceClass::terrain);
+}
+
+TEST(CityJson, ASequenceGivesEachFeatureItsOwnVertices) {
+  const std::string header = R"({"type":"CityJSON","version":"2.0","CityObjects":{},"vertices":[],"transform":{"scale":[1,1,1],"translate":[10,20,30]}})";
+  const std::string feature = R"({"type":"CityJSONFeature","id":"f","vertices":[[0,0,0],[1,0,0],[0,1,0]],"CityObjects":{"f":{"type":"Building",
+    "geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]]]}]}}})";
+  std::string line = feature;
+  std::erase(line, '\n');
+  const auto models = read(header + "\n" + line + "\n" + line + "\n", {}, ".city.jsonl");
+  ASSERT_EQ(models.size(), 2u);
+  EXPECT_EQ(models[1].polygons[0].polygon.exterior[0], Eigen::Vector3d(10, 20, 30));
+}
+
+TEST(CityJson, BadInputIsRefusedWithItsCause) {
+  auto message = [](const std::string& text) -> std::string {
+    try {
+      read(text);
+      return "";
+    } catch (const FormatError& error) {
+      return error.what();
+    }
+  };
+  const std::string object = R"("CityObjects":{"b":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,99]]]}]}})";
+  EXPECT_NE(message("{" + head + "," + object + "," + vertices + "}").find("vertex that is not there"), std::string::npos);
+  EXPECT_NE(message("{" + head + "," + object).find("no whole JSON"), std::string::npos);
+  EXPECT_NE(message("{}").find("no CityJSON"), std::string::npos);
+  EXPECT_NE(message(R"({"type":"FeatureCollection"})").find("CityJSON"), std::string::npos);
+  EXPECT_NE(message(std::string(100000, '[')).find("nested deeper"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace priormap

@@ -1,0 +1,190 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include <priormap/core/error.hpp>
+#include <priormap/sources/osm_footprints.hpp>
+#include <priormap/tessellation/normalize.hpp>
+
+namespace priormap {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// An OSM file of nodes on a lattice (node id = 100 y + x at x, y in 1e-5 degrees), ways and relations.
+class OsmText {
+ public:
+  OsmText& way(int id, const std::vector<int>& nodes, const std::string& tags) {
+    ways_ += "<way id='" + std::to_string(id) + "' version='1'>";
+    for (const int node : nodes) ways_ += "<nd ref='" + std::to_string(node) + "'/>";
+    ways_ += tags + "</way>\n";
+    return *this;
+  }
+  OsmText& relation(int id, const std::string& members_and_tags) {
+    relations_ += "<relation id='" + std::to_string(id) + "' version='1'>" + members_and_tags + "</relation>\n";
+    return *this;
+  }
+  static std::string tag(const std::string& key, const std::string& value) { return "<tag k='" + key + "' v='" + value + "'/>"; }
+  static std::string member(int way, const std::string& role) {
+    return "<member type='way' ref='" + std::to_string(way) + "' role='" + role + "'/>";
+  }
+  std::string text() const {
+    std::string nodes;
+    for (int y = 0; y < 20; ++y)
+      for (int x = 0; x < 20; ++x)
+        nodes += "<node id='" + std::to_string(100 * y + x) + "' version='1' lat='" + std::to_string(y * 1e-5) + "00' lon='" + std::to_string(x * 1e-5) + "00'/>\n";
+    return "<?xml version='1.0' encoding='UTF-8'?>\n<osm version='0.6'>\n" + nodes + ways_ + relations_ + "</osm>\n";
+  }
+
+ private:
+  std::string ways_, relations_;
+};
+
+class OsmFootprints : public testing::Test {
+ protected:
+  OsmFootprints() : folder_(fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name()) { fs::create_directories(folder_); }
+  ~OsmFootprints() override { fs::remove_all(folder_); }
+  fs::path write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+  std::vector<Footprint> read(const OsmText& text) { return read_osm_footprints({write("town.osm", text.text())}, 2, diagnostics_); }
+  std::size_t count(DiagnosticCode code) const { return diagnostics_.counts().contains(code) ? diagnostics_.counts().at(code) : 0; }
+  /// In lattice cells.
+  double cells(const Footprint& footprint) {
+    double sum = 0;
+    std::vector<Ring2> rings = footprint.rings;
+    for (Ring2& ring : rings) for (auto& p : ring) p *= 1e5;
+    Diagnostics ignored;
+    for (const Polygon2& polygon : normalize(rings, footprint.id, ignored)) sum += area(polygon);
+    return sum;
+  }
+
+  fs::path folder_;
+  Diagnostics diagnostics_;
+};
+
+const std::string building = OsmText::tag("building", "yes"), multipolygon = OsmText::tag("type", "multipolygon");
+
+TEST_F(OsmFootprints, AClosedWay) {
+  const auto footprints = read(OsmText().way(7, {0, 4, 304, 300, 0}, building + OsmText::tag("height", "12 m")).way(8, {0, 5, 505, 0}, OsmText::tag("landuse", "grass")));
+  ASSERT_EQ(footprints.size(), 1u);
+  EXPECT_EQ(footprints[0].id, "way/7");
+  EXPECT_EQ(footprints[0].attributes.height_m, 12);
+  ASSERT_EQ(footprints[0].rings.size(), 1u);
+  EXPECT_EQ(footprints[0].rings[0].size(), 4u);
+  EXPECT_NEAR(cells(footprints[0]), 12, 1e-6);
+}
+
+TEST_F(OsmFootprints, AMultipolygonOfPiecesWithTwoTouchingHoles) {
+  const auto footprints = read(OsmText()
+      .way(1, {0, 10, 1010}, "").way(2, {0, 1000, 1010}, "")                    // the outer ring in two pieces, one against the direction
+      .way(3, {202, 204, 404, 402, 202}, "").way(4, {204, 206, 406, 404, 204}, "")  // share the edge 204-404
+      .relation(9, OsmText::member(3, "inner") + OsmText::member(1, "outer") + OsmText::member(4, "inner") + OsmText::member(2, "outer") + multipolygon + building));
+  ASSERT_EQ(footprints.size(), 1u);
+  EXPECT_EQ(footprints[0].id, "relation/9");
+  EXPECT_EQ(footprints[0].rings.size(), 2u) << "the two holes melt";
+  EXPECT_NEAR(cells(footprints[0]), 100 - 8, 1e-6);
+  EXPECT_EQ(diagnostics_.total(), 0u);
+}
+
+TEST_F(OsmFootprints, TwoOuterRingsAndAnIsland) {
+  const auto footprints = read(OsmText()
+      .way(1, {0, 9, 909, 900, 0}, "").way(2, {101, 108, 808, 801, 101}, "").way(3, {303, 305, 505, 503, 303}, "").way(4, {12, 14, 214, 212, 12}, "")
+      .relation(9, OsmText::member(1, "outer") + OsmText::member(2, "inner") + OsmText::member(3, "outer") + OsmText::member(4, "outer") + multipolygon + building));
+  ASSERT_EQ(footprints.size(), 1u);
+  EXPECT_NEAR(cells(footprints[0]), 81 - 49 + 4 + 4, 1e-6);
+}
+
+TEST_F(OsmFootprints, BrokenRingsAreCountedAndTheRestGoesOn) {
+  const auto footprints = read(OsmText()
+      .way(1, {0, 9, 909, 900, 0}, "").way(2, {101, 108, 808}, "").way(3, {303, 305, 505, 503, 303}, "")
+      .relation(9, OsmText::member(1, "outer") + OsmText::member(2, "inner") + OsmText::member(3, "inner") + multipolygon + building)
+      .way(5, {10, 12, 212}, building).way(6, {14, 16, 216, 14}, building));
+  ASSERT_EQ(footprints.size(), 2u);
+  EXPECT_NEAR(cells(footprints[0]), 81 - 4, 1e-6);
+  EXPECT_EQ(footprints[1].id, "way/6");
+  EXPECT_EQ(count(DiagnosticCode::ring_not_closed), 2u);
+  ASSERT_EQ(diagnostics_.entries().size(), 2u);
+  EXPECT_EQ(diagnostics_.entries()[0].feature, "relation/9");
+  EXPECT_EQ(diagnostics_.entries()[1].feature, "way/5");
+}
+
+TEST_F(OsmFootprints, MissingMembersNodesAndMisplacedInnersAreCounted) {
+  const auto footprints = read(OsmText()
+      .way(1, {0, 9, 909, 900, 0}, "").way(3, {1212, 1213, 1313, 1212}, "").way(4, {0, 77777, 909, 0}, building)
+      .relation(9, OsmText::member(1, "outer") + OsmText::member(2, "outer") + OsmText::member(3, "inner") + multipolygon + building));
+  ASSERT_EQ(footprints.size(), 1u);
+  EXPECT_NEAR(cells(footprints[0]), 81, 1e-6);
+  EXPECT_EQ(count(DiagnosticCode::unresolved_reference), 2u);
+  EXPECT_EQ(count(DiagnosticCode::inner_ring_outside), 1u);
+}
+
+TEST_F(OsmFootprints, AWayThatBridgesTwoRingsDoesNotHarmThem) {
+  const auto footprints = read(OsmText()
+      .way(1, {0, 3, 303, 300, 0}, "").way(2, {303, 606}, "").way(3, {606, 609, 909, 906, 606}, "")
+      .relation(9, OsmText::member(1, "outer") + OsmText::member(2, "outer") + OsmText::member(3, "outer") + multipolygon + building));
+  ASSERT_EQ(footprints.size(), 1u);
+  EXPECT_NEAR(cells(footprints[0]), 18, 1e-6);
+  EXPECT_EQ(count(DiagnosticCode::ring_not_closed), 1u);
+}
+
+TEST_F(OsmFootprints, TagsOnTheOuterWayAreTheRelationsAndTheBuildingCountsOnce) {
+  const OsmText rings = OsmText().way(1, {0, 9, 909, 900, 0}, building + OsmText::tag("height", "9")).way(2, {101, 103, 303, 301, 101}, "");
+  const std::string members = OsmText::member(1, "outer") + OsmText::member(2, "inner") + multipolygon;
+  for (const std::string& tags : {std::string(), building}) {
+    const auto footprints = read(OsmText(rings).relation(9, members + tags));
+    ASSERT_EQ(footprints.size(), 1u);
+    EXPECT_EQ(footprints[0].id, "relation/9");
+    EXPECT_EQ(footprints[0].attributes.height_m, 9);
+    EXPECT_NEAR(cells(footprints[0]), 81 - 4, 1e-6);
+  }
+}
+
+TEST_F(OsmFootprints, ABuildingInACourtyardIsItsOwn) {
+  const auto footprints = read(OsmText().way(1, {0, 9, 909, 900, 0}, "").way(2, {101, 103, 303, 301, 101}, building)
+      .relation(9, OsmText::member(1, "outer") + OsmText::member(2, "inner") + multipolygon + building));
+  EXPECT_EQ(footprints.size(), 2u);
+}
+
+TEST_F(OsmFootprints, ABuildingRelationTiesPartsToTheirOutline) {
+  const auto footprints = read(OsmText()
+      .way(1, {0, 9, 909, 900, 0}, "").way(2, {0, 4, 904, 900, 0}, OsmText::tag("building:part", "yes")).way(3, {12, 14, 214, 12}, building)
+      .relation(9, OsmText::member(1, "outline") + OsmText::member(2, "part") + OsmText::tag("type", "building") + building + OsmText::tag("building:levels", "4")));
+  ASSERT_EQ(footprints.size(), 3u);
+  EXPECT_EQ(footprints[0].kind, Footprint::Kind::outline);
+  EXPECT_EQ(footprints[0].attributes.levels, 4) << "what the relation says holds for the outline";
+  EXPECT_EQ(footprints[1].kind, Footprint::Kind::part);
+  EXPECT_NE(footprints[0].building, Footprint::no_building);
+  EXPECT_EQ(footprints[0].building, footprints[1].building);
+  EXPECT_EQ(footprints[2].building, Footprint::no_building);
+}
+
+TEST_F(OsmFootprints, SeveralFilesAreOneDataSetInAnyOrder) {
+  const fs::path a = write("a.osm", OsmText().way(1, {0, 4, 304, 300, 0}, building).way(2, {10, 12, 212, 10}, building).text());
+  const fs::path b = write("b.osm", OsmText().way(2, {10, 12, 212, 10}, building).way(3, {505, 507, 707, 505}, building).text());
+  const auto ab = read_osm_footprints({a, b}, 2, diagnostics_), ba = read_osm_footprints({b, a}, 1, diagnostics_);
+  ASSERT_EQ(ab.size(), 3u);
+  ASSERT_EQ(ba.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(ab[i].id, ba[i].id);
+    EXPECT_EQ(ab[i].rings, ba[i].rings);
+  }
+}
+
+TEST_F(OsmFootprints, UnusableFilesAreNamed) {
+  EXPECT_THROW(read_osm_footprints({folder_ / "absent.osm"}, 1, diagnostics_), IoError);
+  const std::string whole = OsmText().way(1, {0, 4, 304, 300, 0}, building).text();
+  for (const auto& file : {write("cut.osm", whole.substr(0, whole.size() / 2)), write("text.osm", "no xml"), write("empty.osm", ""), write("noise.osm.pbf", "noise"), write("town.txt", whole)}) {
+    try {
+      read_osm_footprints({file}, 2, diagnostics_);
+      ADD_FAILURE() << file << " was read";
+    } catch (const FormatError& error) {
+      EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos) << error.what();
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace priormap
