@@ -13,22 +13,32 @@ namespace priormap {
 /// Which operation a Transformer uses; goes into the manifest.
 struct CoordinateOperation {
   std::string name;                    ///< as PROJ names it
-  std::string proj_string;             ///< pipeline
+  std::string proj_string;             ///< pipeline, coordinates in the order east, north, up
   std::vector<std::string> grids;      ///< short names of the grids used
   std::optional<double> accuracy_m;    ///< as the authority states it
+  /// Grids, not installed here, of an operation that the authority states to be more accurate; empty where there is none.
+  std::vector<std::string> better_grids;
+};
+
+/// Geographic rectangle [degrees]; west > east where it crosses the antimeridian.
+struct LonLatArea {
+  double west_deg = 0, south_deg = 0, east_deg = 0, north_deg = 0;
 };
 
 /// Coordinates from one CRS to another, whole arrays at once. One object per thread (PROJ contexts are not shared);
-/// copies make their own context.
+/// copies make their own context and are cheap.
 ///
 /// Never a ballpark step, never 2D to 3D: heights are either transformed by a known operation or the request is refused.
-/// Where neither side has heights, or `source` and `target` have the same vertical CRS, z is passed through as it is.
-/// A source with undeclared heights (2D) to a 2D target passes z through: the caller knows they are undeclared.
+/// Where the target declares no heights, z is passed through as it is: the heights stay what the source declares them to be.
+/// Where both have the same vertical datum, z changes by the ratio of the units only.
+///
+/// One operation serves all points, whatever their order or number: of those whose grids are installed, the one that PROJ
+/// ranks first for `area` (without: for where both CRS are used). Coordinates outside its grids become NaN.
 class Transformer {
  public:
   /// @throws CrsError when no exact operation exists. The message names the missing grid where one is missing, or says that
   /// no operation is known between the two, or that the source's heights are undeclared.
-  Transformer(const Crs& source, const Crs& target);
+  Transformer(const Crs& source, const Crs& target, const std::optional<LonLatArea>& area = std::nullopt);
   Transformer(const Transformer& other);
   Transformer& operator=(const Transformer& other);
   Transformer(Transformer&&) noexcept;
