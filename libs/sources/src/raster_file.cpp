@@ -1,0 +1,178 @@
+#include "raster_file.hpp"
+
+#include <cpl_conv.h>
+#include <cpl_error.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <vector>
+
+#include <priormap/core/error.hpp>
+
+namespace priormap {
+namespace {
+
+/// GDAL would take 5 % of the machine's memory.
+constexpr std::int64_t gdal_cache_bytes = 128 << 20;
+/// Nothing on Earth is this high: what is beyond is a void value that the file does not declare.
+constexpr double largest_height = 1e5;
+
+void register_gdal() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    GDALAllRegister();
+    if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr)) GDALSetCacheMax64(gdal_cache_bytes);
+  });
+}
+
+/// GDAL prints nothing while this lives.
+class QuietGdal {
+ public:
+  QuietGdal() {
+    CPLPushErrorHandler(CPLQuietErrorHandler);
+    CPLErrorReset();
+  }
+  ~QuietGdal() { CPLPopErrorHandler(); }
+  QuietGdal(const QuietGdal&) = delete;
+  QuietGdal& operator=(const QuietGdal&) = delete;
+  static std::string message() {
+    std::string text = CPLGetLastErrorMsg();
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+  }
+};
+
+std::shared_ptr<GDALDataset> open_dataset(const std::string& name) {
+  auto* dataset = GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY);
+  return {dataset, [](GDALDataset* d) { GDALClose(d); }};
+}
+
+std::shared_ptr<GDALDataset> open_raster(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  if (auto dataset = open_dataset(name)) return dataset;
+  std::string cause = QuietGdal::message();
+  if (file.extension() == ".zip")
+    if (auto dataset = open_dataset("/vsizip/" + name)) return dataset;
+  std::error_code error;
+  const bool is_plain_path = !name.starts_with("/vsi") && name.find(':') == std::string::npos;
+  if (is_plain_path && !std::filesystem::exists(file, error)) throw IoError(file, "does not exist");
+  throw FormatError(file, "is no raster that GDAL reads" + (cause.empty() ? "" : " (" + cause + ")"));
+}
+
+Eigen::Affine2d read_transform(GDALDataset& dataset, const std::filesystem::path& file) {
+  std::array<double, 6> t{};
+  if (dataset.GetGeoTransform(t.data()) != CE_None)
+    throw FormatError(file, "has no georeference (no geotransform); add one with gdal_translate -a_ullr, or gdalwarp where it has control points");
+  Eigen::Affine2d transform;
+  transform.matrix() << t[1], t[2], t[0], t[4], t[5], t[3], 0, 0, 1;
+  if (!transform.matrix().allFinite() || transform.linear().determinant() == 0) throw FormatError(file, "has a georeference without extent");
+  return transform;
+}
+
+std::optional<Crs> read_crs(GDALDataset& dataset) {
+  const OGRSpatialReference* reference = dataset.GetSpatialRef();
+  if (!reference || reference->IsLocal()) return std::nullopt;
+  char* text = nullptr;
+  const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+  const bool exported = reference->exportToWkt(&text, options) == OGRERR_NONE;
+  const std::string wkt = exported ? text : "";
+  CPLFree(text);
+  if (wkt.empty()) return std::nullopt;
+  return Crs::parse(wkt);
+}
+
+/// Metres per unit of undeclared heights that the band gives a unit.
+double band_unit_m(const std::string& unit) {
+  if (unit == "ft" || unit == "foot" || unit == "feet") return 0.3048;
+  if (unit == "us-ft" || unit == "US survey foot" || unit == "sfoot" || unit == "ftUS") return 1200.0 / 3937.0;
+  return 1;
+}
+
+Bounds2 bounds_of(const Eigen::Affine2d& world_from_cell, int width, int height) {
+  Bounds2 bounds{DBL_MAX, DBL_MAX, -DBL_MAX, -DBL_MAX};
+  for (const Eigen::Vector2d& corner : {Eigen::Vector2d(0, 0), Eigen::Vector2d(width, 0), Eigen::Vector2d(0, height), Eigen::Vector2d(width, height)}) {
+    const Eigen::Vector2d p = world_from_cell * corner;
+    bounds = {std::min(bounds.min_x, p.x()), std::min(bounds.min_y, p.y()), std::max(bounds.max_x, p.x()), std::max(bounds.max_y, p.y())};
+  }
+  return bounds;
+}
+
+/// Float32 bands state their no data value in decimal, often rounded: -3.4028e+38.
+bool is_no_data(double value, double no_data, bool is_float32) {
+  if (value == no_data) return true;
+  return is_float32 && std::abs(value - no_data) < 2 * static_cast<double>(FLT_EPSILON) * std::abs(value + no_data);
+}
+
+}  // namespace
+
+RasterFile::RasterFile(const std::filesystem::path& file) : file_(file) {
+  register_gdal();
+  const QuietGdal quiet;
+  dataset_ = open_raster(file);
+  if (dataset_->GetRasterCount() < 1) throw FormatError(file, "holds no raster band; name one of its subdatasets (see gdalinfo)");
+  band_ = dataset_->GetRasterBand(1);
+  world_from_cell_ = read_transform(*dataset_, file);
+
+  facts_.width = dataset_->GetRasterXSize();
+  facts_.height = dataset_->GetRasterYSize();
+  facts_.bounds = bounds_of(world_from_cell_, facts_.width, facts_.height);
+  facts_.cell_x = world_from_cell_.linear().col(0).norm();
+  facts_.cell_y = world_from_cell_.linear().col(1).norm();
+  try {
+    facts_.crs = read_crs(*dataset_);
+  } catch (const CrsError& error) {
+    throw CrsError(file.string() + ": " + error.what());
+  }
+  band_->GetBlockSize(&natural_block_.x(), &natural_block_.y());
+
+  int found = 0;
+  const double no_data = band_->GetNoDataValue(&found);
+  if (found) no_data_ = no_data;
+  is_float32_ = band_->GetRasterDataType() == GDT_Float32;
+  has_mask_ = (band_->GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
+  scale_ = band_->GetScale();
+  offset_ = band_->GetOffset();
+  if (!facts_.crs || !facts_.crs->has_vertical()) {
+    const double unit_m = band_unit_m(band_->GetUnitType());
+    scale_ *= unit_m;
+    offset_ *= unit_m;
+  }
+}
+
+RasterFile::~RasterFile() = default;
+RasterFile::RasterFile(RasterFile&&) noexcept = default;
+
+void RasterFile::read(const CellWindow& window, std::span<double> heights) const {
+  const QuietGdal quiet;
+  if (band_->RasterIO(GF_Read, window.col, window.row, window.width, window.height, heights.data(), window.width, window.height, GDT_Float64, 0, 0,
+                      nullptr) != CE_None)
+    throw FormatError(file_, "has cells that cannot be read: " + QuietGdal::message());
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  if (no_data_)
+    for (double& z : heights)
+      if (is_no_data(z, *no_data_, is_float32_)) z = none;
+  if (has_mask_) drop_masked(window, heights);
+  for (double& z : heights) {
+    z = z * scale_ + offset_;
+    if (!(std::abs(z) < largest_height)) z = none;
+  }
+}
+
+void RasterFile::drop_masked(const CellWindow& window, std::span<double> heights) const {
+  std::vector<std::uint8_t> mask(heights.size());
+  if (band_->GetMaskBand()->RasterIO(GF_Read, window.col, window.row, window.width, window.height, mask.data(), window.width, window.height,
+                                     GDT_Byte, 0, 0, nullptr) != CE_None)
+    throw FormatError(file_, "has a mask that cannot be read: " + QuietGdal::message());
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    if (mask[i] == 0) heights[i] = std::numeric_limits<double>::quiet_NaN();
+}
+
+RasterFacts read_raster_facts(const std::filesystem::path& file) { return RasterFile(file).facts(); }
+
+}  // namespace priormap

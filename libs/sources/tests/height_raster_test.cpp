@@ -1,0 +1,220 @@
+#include <priormap/sources/height_raster.hpp>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <vector>
+
+#include <priormap/core/error.hpp>
+#include <priormap/geodesy/transformer.hpp>
+
+#include "raster_fixture.hpp"
+
+namespace priormap {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+class HeightRasterTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "priormap_raster_XXXXXX").string();
+    folder_ = ::mkdtemp(pattern.data());
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path write(const RasterFixture& fixture, const std::string& name = "dem.tif") {
+    fixture.write(folder_ / name);
+    return folder_ / name;
+  }
+  static HeightRaster open(const fs::path& file, const std::string& target = "EPSG:32632") {
+    return HeightRaster::open(file, std::nullopt, Crs::parse(target));
+  }
+
+  fs::path folder_;
+};
+
+fs::path shared_data(const std::string& name) {
+  const char* folder = std::getenv("PRIORMAP_SHARED_DATA");
+  const fs::path file = fs::path(folder ? folder : PRIORMAP_SOURCE_DIR "/../shared/data") / name;
+  return fs::exists(file) ? file : fs::path();
+}
+
+/// z = 1 + 0.5 x - 0.25 y of the cell's centre, x and y from the raster's corner.
+double plane(double col, double row) { return 1 + 0.5 * (col + 0.5) - 0.25 * (row + 0.5); }
+
+TEST_F(HeightRasterTest, a_plane_is_answered_exactly_between_the_cell_centres) {
+  const HeightRaster raster = open(write({.value = plane}));
+  for (double x = 0.5; x < 9.5; x += 0.37)
+    for (double y = 0.5; y < 7.5; y += 0.41) EXPECT_NEAR(raster.at(500000 + x, 5000000 - y).value(), 1 + 0.5 * x - 0.25 * y, 1e-6);
+}
+
+TEST_F(HeightRasterTest, half_a_cell_at_the_edge_takes_the_edge_cell_and_outside_is_nothing) {
+  const HeightRaster raster = open(write({.value = plane}));
+  EXPECT_NEAR(raster.at(500000, 5000000).value(), plane(0, 0), 1e-6);
+  EXPECT_NEAR(raster.at(500010, 4999992).value(), plane(9, 7), 1e-6);
+  EXPECT_FALSE(raster.at(499999.99, 4999995));
+  EXPECT_FALSE(raster.at(500005, 5000000.01));
+  EXPECT_FALSE(raster.at(nan, 4999995));
+}
+
+TEST_F(HeightRasterTest, pixel_is_point_and_pixel_is_area_files_are_told_apart) {
+  // The same tie point (500000, 5000000): of the first cell's corner, or of its centre.
+  const auto with_interpretation = [&](const char* word) {
+    return write({.transform = {500000, 1, 0, 5000000, 0, -1}, .value = plane,
+                  .adjust = [&](GDALDataset& d) { d.SetMetadataItem("AREA_OR_POINT", word); }},
+                 std::string(word) + ".tif");
+  };
+  // GDAL's geotransform is that of the corner in both cases, whatever the file's tags say inside.
+  EXPECT_NEAR(open(with_interpretation("Area")).at(500003.5, 4999996.5).value(), plane(3, 3), 1e-6);
+  EXPECT_NEAR(open(with_interpretation("Point")).at(500003.5, 4999996.5).value(), plane(3, 3), 1e-6);
+}
+
+TEST_F(HeightRasterTest, srtm_tiles_have_their_samples_on_whole_arc_seconds) {
+  const fs::path file = shared_data("dem/N43E007.hgt.zip");
+  if (file.empty()) GTEST_SKIP() << "the real inputs are absent";
+  const RasterFacts facts = read_raster_facts(file);
+  EXPECT_EQ(facts.width, 1201);
+  EXPECT_NEAR(facts.bounds.min_x, 7 - 0.5 / 1200, 1e-9);
+  EXPECT_NEAR(facts.bounds.max_y, 44 + 0.5 / 1200, 1e-9);
+  const HeightRaster raster = open(file, "EPSG:4326");
+  EXPECT_NEAR(raster.at(7.4167, 43.7667).value(), 600, 250) << "the mountains above Monaco";
+}
+
+TEST_F(HeightRasterTest, every_way_to_say_no_data_is_understood) {
+  const auto hole = [](double value) { return [value](double col, double row) { return col == 5 && row == 4 ? value : plane(col, row); }; };
+  const auto expect_hole = [&](const RasterFixture& fixture, const std::string& name) {
+    const HeightRaster raster = open(write(fixture, name));
+    EXPECT_FALSE(raster.at(500005.5, 4999995.5)) << name;
+    EXPECT_TRUE(raster.at(500004.5, 4999995.5)) << name;
+    std::size_t count = 0;
+    raster.for_each_inside({500000, 4999992, 500010, 5000000}, [&](double, double, double) { ++count; });
+    EXPECT_EQ(count, 79u) << name;
+  };
+  expect_hole({.no_data = -9999, .value = hole(-9999)}, "declared.tif");
+  expect_hole({.type = GDT_Float64, .no_data = -9999, .value = hole(-9999)}, "double.tif");
+  expect_hole({.type = GDT_Int16, .no_data = -32768, .value = hole(-32768)}, "integer.tif");
+  expect_hole({.value = hole(nan)}, "not_a_number.tif");
+  expect_hole({.no_data = nan, .value = hole(nan)}, "declared_not_a_number.tif");
+  expect_hole({.no_data = -3.402823e+38, .value = hole(-3.4028234663852886e+38)}, "rounded.tif");
+  expect_hole({.value = hole(-3.4e38)}, "undeclared_lowest_float.tif");
+  expect_hole({.value = hole(std::numeric_limits<double>::infinity())}, "infinite.tif");
+}
+
+TEST_F(HeightRasterTest, a_mask_band_hides_cells) {
+  CPLSetConfigOption("GDAL_TIFF_INTERNAL_MASK", "YES");
+  const fs::path file = write({.value = plane});
+  auto* dataset = GDALDataset::Open(file.c_str(), GDAL_OF_UPDATE);
+  ASSERT_EQ(dataset->CreateMaskBand(GMF_PER_DATASET), CE_None);
+  std::vector<std::uint8_t> mask(80, 255);
+  mask[4 * 10 + 5] = 0;
+  ASSERT_EQ(dataset->GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Write, 0, 0, 10, 8, mask.data(), 10, 8, GDT_Byte, 0, 0, nullptr), CE_None);
+  GDALClose(dataset);
+  const HeightRaster raster = open(file);
+  EXPECT_FALSE(raster.at(500005.5, 4999995.5));
+  EXPECT_TRUE(raster.at(500004.5, 4999995.5));
+}
+
+TEST_F(HeightRasterTest, scale_and_offset_of_the_band_are_applied_and_no_data_is_the_raw_value) {
+  const HeightRaster raster = open(write({.type = GDT_Int16,
+                                          .no_data = 0,
+                                          .value = [](double col, double row) { return col == 5 && row == 4 ? 0 : 10 * col; },
+                                          .adjust =
+                                              [](GDALDataset& d) {
+                                                d.GetRasterBand(1)->SetScale(0.1);
+                                                d.GetRasterBand(1)->SetOffset(200);
+                                              }}));
+  EXPECT_NEAR(raster.at(500003.5, 4999995.5).value(), 203, 1e-9);
+  EXPECT_FALSE(raster.at(500005.5, 4999995.5));
+}
+
+TEST_F(HeightRasterTest, undeclared_heights_in_feet_become_metres) {
+  const HeightRaster raster =
+      open(write({.value = [](double, double) { return 100; }, .adjust = [](GDALDataset& d) { d.GetRasterBand(1)->SetUnitType("ft"); }}));
+  EXPECT_NEAR(raster.at(500003.5, 4999995.5).value(), 30.48, 1e-9);
+}
+
+TEST_F(HeightRasterTest, south_up_and_rotated_rasters) {
+  const HeightRaster south_up = open(write({.transform = {500000, 1, 0, 4999992, 0, 1}, .value = plane}, "south_up.tif"));
+  EXPECT_NEAR(south_up.at(500003.5, 4999992 + 2.5).value(), plane(3, 2), 1e-6);
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  const HeightRaster rotated = open(write({.transform = {500000, c, s, 5000000, s, -c}, .value = plane}, "rotated.tif"));
+  EXPECT_NEAR(rotated.at(500000 + c * 3.5 + s * 2.5, 5000000 + s * 3.5 - c * 2.5).value(), plane(3, 2), 1e-6);
+  EXPECT_NEAR(rotated.cell_size(), 1, 1e-9);
+}
+
+TEST_F(HeightRasterTest, cells_inside_bounds_are_those_whose_centre_is_inside_half_open) {
+  const HeightRaster raster = open(write({.value = plane}));
+  std::vector<Eigen::Vector3d> cells;
+  raster.for_each_inside({500002.5, 4999995.5, 500004.5, 4999996.5}, [&](double x, double y, double z) { cells.emplace_back(x, y, z); });
+  ASSERT_EQ(cells.size(), 2u);
+  EXPECT_EQ(cells[0], Eigen::Vector3d(500002.5, 4999995.5, plane(2, 4)));
+  EXPECT_EQ(cells[1], Eigen::Vector3d(500003.5, 4999995.5, plane(3, 4)));
+}
+
+TEST_F(HeightRasterTest, answers_in_another_crs_at_the_same_place) {
+  const HeightRaster raster = open(write({.width = 100, .height = 100, .transform = {690000, 10, 0, 5336000, 0, -10}, .value = plane}), "EPSG:4326");
+  const Transformer to_lon_lat(Crs::parse("EPSG:32632"), Crs::parse("EPSG:4326"));
+  const Eigen::Vector3d p = to_lon_lat.forward(Eigen::Vector3d(690335, 5335735, 0));
+  EXPECT_NEAR(raster.at(p.x(), p.y()).value(), plane(33, 26), 1e-5);
+  std::size_t count = 0;
+  raster.for_each_inside({p.x() - 1e-5, p.y() - 1e-5, p.x() + 1e-5, p.y() + 1e-5}, [&](double x, double y, double z) {
+    EXPECT_NEAR(x, p.x(), 1e-9);
+    EXPECT_NEAR(y, p.y(), 1e-9);
+    EXPECT_NEAR(z, plane(33, 26), 1e-6);
+    ++count;
+  });
+  EXPECT_EQ(count, 1u);
+}
+
+TEST_F(HeightRasterTest, heights_are_transformed_between_declared_vertical_systems) {
+  const HeightRaster raster = HeightRaster::open(write({.transform = {690000, 1, 0, 5336000, 0, -1}, .value = [](double, double) { return 500; }}),
+                                                 Crs::parse("EPSG:32632+5773"), Crs::parse("EPSG:4979"));
+  const Transformer to_geographic(Crs::parse("EPSG:32632+5773"), Crs::parse("EPSG:4979"));
+  const Eigen::Vector3d p = to_geographic.forward(Eigen::Vector3d(690005, 5335995, 500));
+  EXPECT_GT(p.z(), 540) << "the EGM96 undulation near Munich is 45 m";
+  EXPECT_NEAR(raster.at(p.x(), p.y()).value(), p.z(), 1e-3);
+}
+
+TEST_F(HeightRasterTest, undeclared_heights_are_never_taken_for_declared_ones) {
+  EXPECT_THROW(open(write({}), "EPSG:32632+5773"), CrsError);
+  EXPECT_THROW(open(write({.crs = ""}, "none.tif")), CrsError);
+  EXPECT_NO_THROW(HeightRaster::open(folder_ / "none.tif", Crs::parse("EPSG:32632"), Crs::parse("EPSG:32632")));
+}
+
+TEST_F(HeightRasterTest, blocks_of_a_large_raster_agree_with_its_cells) {
+  const HeightRaster raster = open(write({.width = 3000, .height = 2100, .value = [](double col, double row) { return col * 0.01 + row; }}));
+  HeightRaster copy = raster;
+  for (int k = 0; k < 20000; ++k) {
+    const int col = (k * 7919) % 2999, row = (k * 104729) % 2099;
+    ASSERT_NEAR(copy.at(500000 + col + 0.5, 5000000 - row - 0.5).value(), col * 0.01 + row, 2e-4);
+  }
+}
+
+TEST_F(HeightRasterTest, unusable_files_are_named_with_the_cause) {
+  EXPECT_THROW(open(folder_ / "none.tif"), IoError);
+  std::ofstream(folder_ / "text.tif") << "no raster";
+  EXPECT_THROW(open(folder_ / "text.tif"), FormatError);
+  const fs::path plain = folder_ / "plain.png";
+  auto* memory = GetGDALDriverManager()->GetDriverByName("MEM")->Create("", 4, 4, 1, GDT_Byte, nullptr);
+  GDALClose(GetGDALDriverManager()->GetDriverByName("PNG")->CreateCopy(plain.c_str(), memory, false, nullptr, nullptr, nullptr));
+  GDALClose(memory);
+  try {
+    open(plain);
+    FAIL();
+  } catch (const FormatError& error) {
+    EXPECT_NE(std::string(error.what()).find("no georeference"), std::string::npos);
+  }
+  const fs::path cut = write({.width = 1000, .height = 1000}, "cut.tif");
+  fs::resize_file(cut, fs::file_size(cut) / 2);
+  const HeightRaster raster = open(cut);
+  EXPECT_THROW(raster.at(500500.5, 5000000 - 900.5), FormatError);
+}
+
+}  // namespace
+}  // namespace priormap
