@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# Puts each program's --help into its man page, between the two marks. Usage: docs/man/update.sh [BIN]   (default build/dev/bin)
+set -euo pipefail
+cd "$(dirname "$0")"
+bin=$(cd "${1:-../../build/dev/bin}" && pwd)
+for page in *.1.md; do
+  tool=${page%.1.md}
+  "$bin/$tool" --help >"$page.help"
+  awk -v help="$page.help" '
+    /^<!-- end of --help -->$/ { skipping = 0 }
+    !skipping { print }
+    /^<!-- --help -->$/ { skipping = 1; print "```"; while ((getline line < help) > 0) print line; print "```" }
+  ' "$page" >"$page.new"
+  mv "$page.new" "$page"
+  rm "$page.help"
+done

@@ -1,0 +1,14 @@
+# Projected coordinates are never measured as metres: without a CRS the comparison is refused, with one it is in true metres.
+header=index,stamp_s,x_m,y_m,z_m,qx,qy,qz,qw,lon_deg,lat_deg,verdict
+mkdir truth estimate
+{ echo $header; for i in 0 1 2; do echo "$i,$i,$((500000 + 1000 * i)),5360000,0,0,0,0,1,9,48.4,anchored"; done; } >truth/trajectory.csv
+sed 's/,5360000,/,5361000,/' truth/trajectory.csv >estimate/trajectory.csv
+fails_with 1 "give it with --crs" evaltraj --reference truth/trajectory.csv --estimate estimate/trajectory.csv
+echo '{"crs": "EPSG:25832"}' | tee truth/frame.json >estimate/run.json
+succeeds evaltraj --reference truth/trajectory.csv --estimate estimate/trajectory.csv
+# 1000 m of the grid on the central meridian (scale 0.9996) are 1000.40 m.
+expect_in stdout "position     1000.400"
+awk -F, 'NR > 1 { print $1, $3, $4, $5, 0, 0, 0, 1 }' truth/trajectory.csv >metric.txt
+fails_with 1 "only the reference is georeferenced (EPSG:25832)" evaltraj --reference truth/trajectory.csv --estimate metric.txt
+echo 'not json' >truth/frame.json
+fails_with 1 "frame.json: is no JSON object" evaltraj --reference truth/trajectory.csv --estimate estimate/trajectory.csv
