@@ -13,8 +13,10 @@ std::optional<std::string> crs_beside(const std::filesystem::path& file) {
     if (!std::filesystem::exists(beside)) continue;
     const auto json = nlohmann::json::parse(read_text(beside), nullptr, false);
     if (!json.is_object()) throw FormatError(beside, "is no JSON object; the CRS of " + file.filename().string() + " should stand there");
-    const auto crs = json.find("crs");
-    if (crs == json.end()) continue;
+    const auto frame = json.find("frame");
+    const auto& holder = frame != json.end() && frame->is_object() ? *frame : json;
+    const auto crs = holder.find("crs");
+    if (crs == holder.end()) continue;
     if (crs->is_null()) return "";
     if (crs->is_string()) return crs->get<std::string>();
     throw FormatError(beside, "its field \"crs\" is neither text nor null");

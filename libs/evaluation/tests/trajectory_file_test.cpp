@@ -50,13 +50,16 @@ TEST(TrajectoryFile, CsvTakesItsCrsFromTheReportBesideIt) {
   const auto file = folder.file("trajectory.csv", projected_csv);
   EXPECT_NE(message_of<CrsError>([&] { read_trajectory(file, automatic, ""); }).find("--crs"), std::string::npos);
   EXPECT_EQ(read_trajectory(file, automatic, "EPSG:32632").crs, "EPSG:32632");
-  folder.file("run.json", R"({"crs": "EPSG:25832+7837"})");
+  folder.file("run.json", R"({"frame": {"crs": "EPSG:25832+7837"}})");
   const Trajectory trajectory = read_trajectory(file, automatic, "EPSG:32632");
   EXPECT_EQ(trajectory.crs, "EPSG:25832+7837");
   EXPECT_EQ(trajectory.indices, (std::vector<std::int64_t>{3}));
   EXPECT_EQ(trajectory.stamps_s, (std::vector<double>{0.3}));
-  folder.file("run.json", R"({"crs": null})");
+  folder.file("run.json", R"({"frame": {"crs": null}})");
   EXPECT_EQ(read_trajectory(file, automatic, "").crs, "") << "a local metric frame says so";
+  std::filesystem::remove(file.parent_path() / "run.json");
+  folder.file("frame.json", R"({"crs": "EPSG:25833"})");
+  EXPECT_EQ(read_trajectory(file, automatic, "").crs, "EPSG:25833");
 }
 
 TEST(TrajectoryFile, CsvWithBothFramesIsReadOnTheGridOnlyWhenItsCrsIsKnown) {

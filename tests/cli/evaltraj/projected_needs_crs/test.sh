@@ -4,7 +4,8 @@ mkdir truth estimate
 { echo $header; for i in 0 1 2; do echo "$i,$i,$((500000 + 1000 * i)),5360000,0,0,0,0,1,9,48.4,anchored"; done; } >truth/trajectory.csv
 sed 's/,5360000,/,5361000,/' truth/trajectory.csv >estimate/trajectory.csv
 fails_with 1 "give it with --crs" evaltraj --reference truth/trajectory.csv --estimate estimate/trajectory.csv
-echo '{"crs": "EPSG:25832"}' | tee truth/frame.json >estimate/run.json
+echo '{"crs": "EPSG:25832"}' >truth/frame.json
+echo '{"frame": {"crs": "EPSG:25832"}}' >estimate/run.json
 succeeds evaltraj --reference truth/trajectory.csv --estimate estimate/trajectory.csv
 # 1000 m of the grid on the central meridian (scale 0.9996) are 1000.40 m.
 expect_in stdout "position     1000.400"

@@ -20,7 +20,7 @@ TrajectoryFormat trajectory_format(const std::string& word);
 ///   east_m,north_m,height_m,grid_qx,grid_qy,grid_qz,grid_qw    in a projected CRS, when that CRS is known
 ///   x_m,y_m,z_m,qx,qy,qz,qw                                    in a projected CRS when one is known (and the set above is absent), else metric
 ///   lat_deg,lon_deg,alt_m,roll_rad,pitch_rad,yaw_rad           WGS 84, yaw counter-clockwise from true east (KITTI's OXTS); becomes UTM
-/// and `index` or `frame`, `stamp_s` or `unix_time_s` beside them. The CRS is the field "crs" of run.json or frame.json in the csv's
+/// and `index` or `frame`, `stamp_s` or `unix_time_s` beside them. The CRS is the field "crs" of run.json's "frame" or of frame.json in the csv's
 /// folder, else `default_crs` (may be empty).
 /// @throws IoError when the file cannot be read; FormatError naming the line that is no pose, or a file without poses;
 /// CrsError when the columns are projected coordinates (they come with lon_deg, lat_deg) and no CRS is known.
