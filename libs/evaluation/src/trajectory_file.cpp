@@ -27,6 +27,12 @@ Eigen::Isometry3d pose_of(const Eigen::Vector3d& position, double qx, double qy,
   return Eigen::Translation3d(position) * q.normalized();
 }
 
+std::int64_t index_of(double value, const fs::path& file, const TextRow& row) {
+  constexpr double largest_exact = 9007199254740992;   // 2^53
+  if (value != std::floor(value) || std::abs(value) > largest_exact) fail(file, row, "the index is no whole number");
+  return static_cast<std::int64_t>(value);
+}
+
 std::vector<double> numbers_of(const fs::path& file, const TextRow& row) {
   std::vector<double> numbers;
   for (const std::string_view field : split(row.text, ' ')) {
@@ -53,7 +59,7 @@ Trajectory read_kitti(const fs::path& file, std::span<const TextRow> rows) {
   for (const TextRow& row : rows) {
     std::vector<double> n = numbers_of(file, row);
     if (n.size() == 13) {
-      trajectory.indices.push_back(std::llround(n[0]));
+      trajectory.indices.push_back(index_of(n[0], file, row));
       n.erase(n.begin());
     } else {
       trajectory.indices.push_back(static_cast<std::int64_t>(trajectory.size()));
@@ -137,7 +143,7 @@ Trajectory read_csv(const fs::path& file, std::span<const TextRow> rows, const s
   std::vector<OxtsPose> oxts_poses;
   for (const TextRow& row : rows.subspan(1)) {
     const CsvLine line(file, row, header.width());
-    if (index) trajectory.indices.push_back(std::llround(line.at(*index)));
+    if (index) trajectory.indices.push_back(index_of(line.at(*index), file, row));
     if (stamp) trajectory.stamps_s.push_back(line.at(*stamp));
     if (oxts) {
       const auto value = [&](std::size_t k) { return line.at(header.column(oxts_columns[k])); };

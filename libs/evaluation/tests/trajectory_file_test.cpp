@@ -105,6 +105,7 @@ TEST(TrajectoryFile, SaysWhichLineIsNoPose) {
   EXPECT_NE(reads("0 1 2 3 0 0 0 5\n").find("not of unit length"), std::string::npos);
   EXPECT_NE(reads("1 0 0 0 0 1 0 0 0 0 -1 0\n").find("no rotation"), std::string::npos);
   EXPECT_NE(reads("1 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n").find("backwards"), std::string::npos);
+  EXPECT_NE(reads("0.5 1 0 0 0 0 1 0 0 0 0 1 0\n").find("no whole number"), std::string::npos);
   EXPECT_NE(reads("# nothing\n\n").find("holds no poses"), std::string::npos);
   EXPECT_NE(reads("1 2 3\n").find("neither TUM"), std::string::npos);
   EXPECT_NE(reads("index,x_m\n0,1\n").find("its header has no poses"), std::string::npos);
