@@ -5,6 +5,7 @@ cd "$(dirname "$0")"
 bin=$(cd "${1:-../../build/dev/bin}" && pwd)
 for page in *.1.md; do
   tool=${page%.1.md}
+  [ -x "$bin/$tool" ] || { echo "update.sh: no $tool in $bin; build it first" >&2; exit 1; }
   "$bin/$tool" --help >"$page.help"
   awk -v help="$page.help" '
     /^<!-- end of --help -->$/ { skipping = 0 }

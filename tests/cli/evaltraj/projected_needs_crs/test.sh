@@ -7,8 +7,8 @@ fails_with 1 "give it with --crs" evaltraj --reference truth/trajectory.csv --es
 echo '{"crs": "EPSG:25832"}' >truth/frame.json
 echo '{"frame": {"crs": "EPSG:25832"}}' >estimate/run.json
 succeeds evaltraj --reference truth/trajectory.csv --estimate estimate/trajectory.csv
-# 1000 m of the grid on the central meridian (scale 0.9996) are 1000.40 m.
-expect_in stdout "position     1000.400"
+# 1000 m of the grid on the central meridian (scale 0.9996) are 1000.40 m on the ellipsoid, 7 mm more at its 47 m above it.
+expect_in stdout "position     1000.407"
 awk -F, 'NR > 1 { print $1, $3, $4, $5, 0, 0, 0, 1 }' truth/trajectory.csv >metric.txt
 fails_with 1 "only the reference is georeferenced (EPSG:25832)" evaltraj --reference truth/trajectory.csv --estimate metric.txt
 echo 'not json' >truth/frame.json
