@@ -1,5 +1,7 @@
 #include <priormap/simulation/town.hpp>
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
