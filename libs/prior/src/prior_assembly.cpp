@@ -19,7 +19,6 @@ namespace {
 class TileRuns {
  public:
   TileRuns(const LatticeGrid& grid, std::int64_t halo_steps, TileSpool& spool) : grid_(grid), halo_(halo_steps), spool_(spool) {}
-  ~TileRuns() = default;
 
   void add(PointRecord record, std::int64_t x, std::int64_t y) {
     if (run_.empty() || x < low_x_ || y < low_y_ || x >= low_x_ + grid_.tile_steps() || y >= low_y_ + grid_.tile_steps())
@@ -27,7 +26,7 @@ class TileRuns {
     record.x = std::int32_t(x - low_x_);
     record.y = std::int32_t(y - low_y_);
     run_.push_back(record);
-    if (halo_ > 0) add_halo(record, x, y);
+    if (is_near_edge(record)) add_halo(record, x, y);
   }
   void flush() {
     if (!run_.empty()) spool_.add(key_, run_);
@@ -40,6 +39,11 @@ class TileRuns {
     key_ = key;
     low_x_ = grid_.origin(key.x);
     low_y_ = grid_.origin(key.y);
+  }
+
+  bool is_near_edge(const PointRecord& p) const {
+    const std::int64_t last = grid_.tile_steps() - 1 - halo_;
+    return halo_ > 0 && (p.x < halo_ || p.y < halo_ || p.x > last || p.y > last);
   }
 
   void add_halo(PointRecord record, std::int64_t x, std::int64_t y) {
@@ -118,23 +122,32 @@ PriorAssembly::PriorAssembly(const std::filesystem::path& directory, PriorManife
   manifest_.vertical = vertical_name(manifest_.crs);
 }
 
-void PriorAssembly::add(const PointCloud& points) {
-  points.check_columns();
-  check_features(points);
-  const RecordColumns columns(points);
+template <class Position>
+void PriorAssembly::add_each(const PointCloud& columns, const Position& position) {
+  columns.check_columns();
+  mark_features(columns);
+  const RecordColumns records(columns);
   TileRuns runs(grid_, halo_steps_, tiles_);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Eigen::Vector3d position = points.position(i);
-    PointRecord record = columns.record(i);
-    record.z = to_height_mm(position.z());
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const Eigen::Vector3d p = position(i);
+    PointRecord record = records.record(i);
+    record.z = to_height_mm(p.z());
     if (record.source >= manifest_.sources.size())
       throw Error("a point names source " + std::to_string(record.source) + ", which the prior does not hold");
-    runs.add(record, to_lattice(position.x()), to_lattice(position.y()));
+    runs.add(record, to_lattice(p.x()), to_lattice(p.y()));
   }
   runs.flush();
 }
 
-void PriorAssembly::check_features(const PointCloud& points) {
+void PriorAssembly::add(const PointCloud& points) {
+  add_each(points, [&](std::size_t i) { return points.position(i); });
+}
+
+void PriorAssembly::add(const PointCloud& columns, std::span<const Eigen::Vector3d> positions) {
+  add_each(columns, [&](std::size_t i) -> const Eigen::Vector3d& { return positions[i]; });
+}
+
+void PriorAssembly::mark_features(const PointCloud& points) {
   std::vector<std::uint32_t> numbers;
   std::uint32_t last = PointCloud::no_feature;
   for (const std::uint32_t number : points.feature)
@@ -149,15 +162,19 @@ void PriorAssembly::set_sources(std::vector<PriorSource> sources) {
   manifest_.sources = std::move(sources);
 }
 
-PriorAssembly::TileResult PriorAssembly::write_tile(TileKey key, const TileFilter& filter) {
-  std::vector<PointRecord> points = tiles_.take(key);
+void PriorAssembly::renumber(std::vector<PointRecord>& points) const {
   for (PointRecord& p : points) {
     p.source = source_index_[p.source];
     if (p.feature != PointCloud::no_feature) p.feature = feature_index_[p.feature];
   }
-  sort_and_unite(points);
+}
+
+PriorAssembly::TileResult PriorAssembly::write_tile(TileKey key, const TileFilter& filter) {
+  std::vector<PointRecord> points = tiles_.take(key);
   if (filter) filter(key, points);
   std::erase_if(points, [](const PointRecord& p) { return p.halo != 0; });
+  renumber(points);
+  sort_and_unite(points);
 
   TileResult result;
   result.entry.key = key;

@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <span>
 
 #include <priormap/core/atomic_output.hpp>
 #include <priormap/core/events.hpp>
@@ -20,17 +21,23 @@ class PriorAssembly {
                 double halo = 0);
 
   void add(const PointCloud& points);
+  /// The columns of a cloud at other positions, one a point.
+  void add(const PointCloud& columns, std::span<const Eigen::Vector3d> positions);
   std::uint32_t add_feature(const Feature& feature);
   void set_sources(std::vector<PriorSource> sources);
 
-  /// May remove points of a tile. They come united and sorted, halo included, with features and sources as they will be written.
+  /// May remove points of a tile. They come in no order, halo included, with the numbers of features and sources they were added
+  /// with. Whether a point stays must depend on the set of points around it alone. Called from several threads.
   using TileFilter = std::function<void(TileKey, std::vector<PointRecord>&)>;
   PriorManifest finish(int threads, const Events& events, const TileFilter& filter = {});
 
  private:
   struct TileResult;
   TileResult write_tile(TileKey key, const TileFilter& filter);
-  void check_features(const PointCloud& points);
+  template <class Position>
+  void add_each(const PointCloud& columns, const Position& position);
+  void mark_features(const PointCloud& points);
+  void renumber(std::vector<PointRecord>& points) const;
 
   AtomicDirectory directory_;
   PriorManifest manifest_;

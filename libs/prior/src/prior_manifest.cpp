@@ -33,12 +33,13 @@ Json to_json(const CoordinateOperation& operation) {
   return {{"name", operation.name},
           {"proj_string", operation.proj_string},
           {"grids", operation.grids},
-          {"accuracy_m", null_if_absent(operation.accuracy_m)}};
+          {"accuracy_m", null_if_absent(operation.accuracy_m)},
+          {"better_grids", operation.better_grids}};
 }
 
 CoordinateOperation operation_from(const nlohmann::json& json) {
   if (json.is_null()) return {};
-  return {json["name"], json["proj_string"], json["grids"], absent_if_null<double>(json["accuracy_m"])};
+  return {json["name"], json["proj_string"], json["grids"], absent_if_null<double>(json["accuracy_m"]), json["better_grids"]};
 }
 
 Json to_json(const PriorSource& source) {

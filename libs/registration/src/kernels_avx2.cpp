@@ -1,3 +1,0 @@
-#define LANES 8
-#define TABLE avx2
-#include "kernels.inl"

@@ -1,3 +1,0 @@
-#define LANES 16
-#define TABLE avx512
-#include "kernels.inl"

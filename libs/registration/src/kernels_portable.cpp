@@ -1,3 +1,0 @@
-#define LANES 4
-#define TABLE portable
-#include "kernels.inl"

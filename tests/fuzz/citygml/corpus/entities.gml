@@ -1,1 +1,0 @@
-<!DOCTYPE x [<!ENTITY a 'aaaaaaaaaa'><!ENTITY b '&a;&a;&a;'>]><CityModel>&b;</CityModel>
