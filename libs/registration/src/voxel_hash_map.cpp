@@ -1,18 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <priormap/core/error.hpp>
 #include <priormap/registration/voxel_hash_map.hpp>
 
 namespace priormap {
 namespace {
-
-std::size_t hash_of(const Eigen::Vector3i& key) {
-  std::uint64_t h = std::uint64_t(std::uint32_t(key.x())) * 0x9e3779b97f4a7c15u;
-  h = (h ^ (h >> 32) ^ std::uint32_t(key.y())) * 0xbf58476d1ce4e5b9u;
-  h = (h ^ (h >> 29) ^ std::uint32_t(key.z())) * 0x94d049bb133111ebu;
-  return h ^ (h >> 31);
-}
 
 /// Square of the distance from `p` to the unit box at `corner`, all in voxels.
 double squared_box_distance(const Eigen::Vector3d& p, const Eigen::Vector3i& corner) {
@@ -25,34 +19,10 @@ double squared_box_distance(const Eigen::Vector3d& p, const Eigen::Vector3i& cor
 VoxelHashMap::VoxelHashMap(const VoxelHashMapOptions& options) : options_(options) {
   if (!(options.voxel_m > 0) || options.max_points < 1 || !(options.min_distance_m >= 0))
     throw UsageError("voxel map: the voxel must be above 0 m, the points a voxel at least 1, their distance not negative");
-  rehash(1024);
 }
 
 Eigen::Vector3i VoxelHashMap::key_of(const Eigen::Vector3d& p) const {
   return (p / options_.voxel_m).array().floor().cast<int>();
-}
-
-std::size_t VoxelHashMap::slot_of(const Eigen::Vector3i& key) const {
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = hash_of(key) & mask;
-  while (slots_[slot] != none && voxels_[slots_[slot]].key != key) slot = (slot + 1) & mask;
-  return slot;
-}
-
-std::uint32_t VoxelHashMap::find_or_add(const Eigen::Vector3i& key) {
-  const std::size_t slot = slot_of(key);
-  if (slots_[slot] != none) return slots_[slot];
-  const auto index = std::uint32_t(voxels_.size());
-  slots_[slot] = index;
-  voxels_.push_back({key, 0});
-  in_voxel_.resize(voxels_.size() * std::size_t(options_.max_points));
-  if (2 * voxels_.size() > slots_.size()) rehash(2 * slots_.size());
-  return index;
-}
-
-void VoxelHashMap::rehash(std::size_t slots) {
-  slots_.assign(slots, none);
-  for (std::uint32_t i = 0; i < voxels_.size(); ++i) slots_[slot_of(voxels_[i].key)] = i;
 }
 
 void VoxelHashMap::insert(const PointCloud& points, const Eigen::Isometry3d& T_map_points) {
@@ -62,37 +32,38 @@ void VoxelHashMap::insert(const PointCloud& points, const Eigen::Isometry3d& T_m
 void VoxelHashMap::insert(const Eigen::Vector3d& p_map) {
   if (!p_map.allFinite()) return;
   const Eigen::Vector3i key = key_of(p_map);
-  const std::uint32_t index = find_or_add(key);
-  Voxel& voxel = voxels_[index];
-  if (voxel.count == std::uint32_t(options_.max_points)) return;
+  const std::uint32_t index = index_.find_or_add(key);
+  if (index == counts_.size()) {
+    counts_.push_back(0);
+    in_voxel_.resize(in_voxel_.size() + std::size_t(options_.max_points));
+  }
+  std::uint32_t& count = counts_[index];
+  if (count == std::uint32_t(options_.max_points)) return;
   const Eigen::Vector3f p = (p_map - corner_of(key)).cast<float>();
   Eigen::Vector3f* const held = &in_voxel_[std::size_t(index) * std::size_t(options_.max_points)];
   const auto least = float(options_.min_distance_m * options_.min_distance_m);
-  for (std::uint32_t i = 0; i < voxel.count; ++i)
+  for (std::uint32_t i = 0; i < count; ++i)
     if ((held[i] - p).squaredNorm() < least) return;
-  held[voxel.count++] = p;
+  held[count++] = p;
   ++size_;
 }
 
 void VoxelHashMap::remove_beyond(const Eigen::Vector3d& center, double distance_m) {
   const auto stride = std::ptrdiff_t(options_.max_points);
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * options_.voxel_m);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < voxels_.size(); ++i) {
-    if ((corner_of(voxels_[i].key) + half - center).squaredNorm() > distance_m * distance_m) {
-      size_ -= voxels_[i].count;
-      continue;
-    }
-    if (kept != i) {
-      voxels_[kept] = voxels_[i];
-      std::copy_n(in_voxel_.begin() + std::ptrdiff_t(i) * stride, stride, in_voxel_.begin() + std::ptrdiff_t(kept) * stride);
-    }
-    ++kept;
+  std::vector<std::uint32_t> keep;
+  for (std::uint32_t i = 0; i < counts_.size(); ++i)
+    if ((corner_of(index_.key(i)) + half - center).squaredNorm() <= distance_m * distance_m) keep.push_back(i);
+  if (keep.size() == counts_.size()) return;
+  for (std::size_t i = 0; i < keep.size(); ++i) {
+    if (i == keep[i]) continue;
+    counts_[i] = counts_[keep[i]];
+    std::copy_n(in_voxel_.begin() + std::ptrdiff_t(keep[i]) * stride, stride, in_voxel_.begin() + std::ptrdiff_t(i) * stride);
   }
-  if (kept == voxels_.size()) return;
-  voxels_.resize(kept);
-  in_voxel_.resize(kept * std::size_t(stride));
-  rehash(slots_.size());
+  counts_.resize(keep.size());
+  in_voxel_.resize(keep.size() * std::size_t(stride));
+  index_.retain(keep);
+  size_ = std::accumulate(counts_.begin(), counts_.end(), std::size_t(0));
 }
 
 std::optional<Neighbor> VoxelHashMap::nearest(const Eigen::Vector3d& query) const {
@@ -105,12 +76,12 @@ std::optional<Neighbor> VoxelHashMap::nearest(const Eigen::Vector3d& query) cons
 
   const auto search = [&](const Eigen::Vector3i& key) {
     if (squared_box_distance(in_voxels, key) * unit >= best) return;
-    const std::uint32_t index = slots_[slot_of(key)];
-    if (index == none) return;
+    const std::uint32_t index = index_.find(key);
+    if (index == VoxelIndex::none) return;
     const Eigen::Vector3d corner = corner_of(key);
     const Eigen::Vector3f local = (query - corner).cast<float>();
     const Eigen::Vector3f* const held = &in_voxel_[std::size_t(index) * std::size_t(options_.max_points)];
-    for (std::uint32_t i = 0; i < voxels_[index].count; ++i) {
+    for (std::uint32_t i = 0; i < counts_[index]; ++i) {
       const double d = double((held[i] - local).squaredNorm());
       if (d >= best) continue;
       best = d;
@@ -131,9 +102,9 @@ PointCloud VoxelHashMap::points(const Eigen::Vector3d& origin) const {
   PointCloud out;
   out.origin = origin;
   out.xyz.reserve(size_);
-  for (std::size_t v = 0; v < voxels_.size(); ++v) {
-    const Eigen::Vector3d corner = corner_of(voxels_[v].key) - origin;
-    for (std::size_t i = 0; i < voxels_[v].count; ++i)
+  for (std::size_t v = 0; v < counts_.size(); ++v) {
+    const Eigen::Vector3d corner = corner_of(index_.key(v)) - origin;
+    for (std::size_t i = 0; i < counts_[v]; ++i)
       out.xyz.push_back((corner + in_voxel_[v * std::size_t(options_.max_points) + i].cast<double>()).cast<float>());
   }
   return out;

@@ -335,21 +335,20 @@ void read_sequence(Document& document, const BuildingModelOptions& options, cons
   }
 }
 
-/// By name: a sequence and a single document start alike.
-bool is_sequence(const Document& document) {
-  const std::string extension = document.file.extension();
-  return extension == ".jsonl" || extension == ".ndjson";
-}
-
 }  // namespace
 
-void read_cityjson(const std::filesystem::path& file, const BuildingModelOptions& options, const BuildingModelSink& sink) {
+CityJsonLayout cityjson_layout(const std::filesystem::path& file) {
+  const std::string extension = file.extension();
+  return extension == ".jsonl" || extension == ".ndjson" ? CityJsonLayout::sequence : CityJsonLayout::document;
+}
+
+void read_cityjson(const std::filesystem::path& file, CityJsonLayout layout, const BuildingModelOptions& options, const BuildingModelSink& sink) {
   if (std::filesystem::is_directory(file)) throw IoError(file, "is a directory, not a file");
   if (!std::ifstream(file, std::ios::binary)) throw IoError(file, "cannot be opened");
   Document document;
   document.file = file;
   try {
-    is_sequence(document) ? read_sequence(document, options, sink) : read_single_document(document, options, sink);
+    layout == CityJsonLayout::sequence ? read_sequence(document, options, sink) : read_single_document(document, options, sink);
   } catch (const json::exception& error) {   // a member of another JSON type than the specification demands
     document.fail(std::string("is no CityJSON: ") + error.what());
   }

@@ -11,7 +11,7 @@ namespace {
 std::vector<BuildingModel> read(const std::string& text, const BuildingModelOptions& options = {}, const std::string& extension = ".json") {
   const TemporaryFile file(extension, text);
   std::vector<BuildingModel> models;
-  read_cityjson(file.path(), options, [&](BuildingModel&& model) { models.push_back(std::move(model)); });
+  read_cityjson(file.path(), cityjson_layout(file.path()), options, [&](BuildingModel&& model) { models.push_back(std::move(model)); });
   return models;
 }
 

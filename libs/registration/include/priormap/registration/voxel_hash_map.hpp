@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <priormap/pointcloud/point_cloud.hpp>
+#include <priormap/registration/voxel_index.hpp>
 #include <vector>
 
 namespace priormap {
@@ -44,28 +45,19 @@ class VoxelHashMap {
 
   std::size_t size() const { return size_; }  ///< points held
   bool empty() const { return size_ == 0; }
-  std::size_t voxel_count() const { return voxels_.size(); }
+  std::size_t voxel_count() const { return index_.size(); }
   /// All points, relative to `origin`, voxel by voxel.
   PointCloud points(const Eigen::Vector3d& origin = Eigen::Vector3d::Zero()) const;
   const VoxelHashMapOptions& options() const { return options_; }
 
  private:
-  struct Voxel {
-    Eigen::Vector3i key;
-    std::uint32_t count;
-  };
-  static constexpr std::uint32_t none = 0xffffffffu;
-
   Eigen::Vector3i key_of(const Eigen::Vector3d& p) const;
   Eigen::Vector3d corner_of(const Eigen::Vector3i& key) const { return key.cast<double>() * options_.voxel_m; }
-  std::size_t slot_of(const Eigen::Vector3i& key) const;
-  std::uint32_t find_or_add(const Eigen::Vector3i& key);
-  void rehash(std::size_t slots);
 
   VoxelHashMapOptions options_;
-  std::vector<Voxel> voxels_;
+  VoxelIndex index_;
+  std::vector<std::uint32_t> counts_;      ///< points of each voxel
   std::vector<Eigen::Vector3f> in_voxel_;  ///< max_points per voxel, relative to the voxel's corner
-  std::vector<std::uint32_t> slots_;       ///< open addressing, index into voxels_
   std::size_t size_ = 0;
 };
 

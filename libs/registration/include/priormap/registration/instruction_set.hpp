@@ -1,0 +1,11 @@
+#pragma once
+
+namespace priormap {
+
+/// Instruction sets of the inner loops; `best` asks the processor. All search alike and add the same terms in the same order.
+enum class InstructionSet { best, portable, avx2, avx512 };
+
+/// Whether this processor can run `set`.
+bool is_available(InstructionSet set);
+
+}  // namespace priormap

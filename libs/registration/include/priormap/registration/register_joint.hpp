@@ -1,0 +1,92 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <memory>
+#include <optional>
+#include <priormap/registration/instruction_set.hpp>
+#include <priormap/registration/registration_result.hpp>
+#include <priormap/registration/surfel.hpp>
+#include <priormap/registration/surfel_map.hpp>
+#include <span>
+#include <vector>
+
+namespace priormap {
+
+/// A map to register against, and how far its word counts.
+struct JointTarget {
+  const SurfelMap* map = nullptr;
+  double sigma_m = 0.02;   ///< added (in squares) to the sigma of each of its surfels
+  double weight = 1.0;     ///< on its whole information: below 1 where the errors of neighbouring surfels hang together
+};
+
+struct JointOptions {
+  double max_distance_m = 2.0;
+  double kernel_width = 3.0;
+  double point_sigma_m = 0.03;
+  double min_scale = 1.0;
+  int max_iterations = 30;
+  double translation_epsilon_m = 5e-4;
+  double rotation_epsilon_rad = 2e-5;
+
+  template <class Visitor>
+  void describe(Visitor& visit) {
+    visit("joint-max-distance", max_distance_m, {"correspondences farther apart are dropped", "m", 0.01, 100});
+    visit("joint-kernel-width", kernel_width, {"width of the Geman-McClure kernel, in robust standard deviations of the residuals", "", 0.5, 100});
+    visit("point-sigma", point_sigma_m, {"standard deviation of a scan's points along the normal", "m", 1e-3, 10});
+    visit("min-scale", min_scale, {"least robust standard deviation of the whitened residuals", "", 0.01, 100});
+    visit("joint-iterations", max_iterations, {"most Gauss-Newton steps of one registration", "", 1, 1000});
+    visit("joint-translation-epsilon", translation_epsilon_m, {"a step shorter than this and turning less than joint-rotation-epsilon ends it", "m", 1e-9, 1});
+    visit("joint-rotation-epsilon", rotation_epsilon_rad, {"see joint-translation-epsilon", "rad", 1e-9, 1});
+  }
+};
+
+/// What is known of the pose beforehand; `information` with the tangent of `retract` at T.
+struct PosePrior {
+  Eigen::Isometry3d T_map_scan = Eigen::Isometry3d::Identity();
+  Matrix6d information = Matrix6d::Zero();
+};
+
+/// The part of one target in a joint registration, at the pose returned.
+struct TargetResult {
+  std::size_t num_correspondences = 0;
+  std::size_t num_inliers = 0;               ///< whitened residual below kernel_width times scale
+  double inlier_rmse_m = 0;
+  double scale = 0;                          ///< robust standard deviation of the whitened residuals, at least min_scale
+  Matrix6d information = Matrix6d::Zero();   ///< J^T W J of this target alone, divided by scale^2 and times its weight
+  Vector6d gradient = Vector6d::Zero();      ///< of half the cost: what this target alone would move is -information^-1 gradient
+  /// The pose that this target alone prefers, to first order: with `information` it makes a factor of a pose graph. Directions that it does not observe stay at the joint pose.
+  Eigen::Isometry3d T_map_scan = Eigen::Isometry3d::Identity();
+  double inlier_share() const { return num_correspondences == 0 ? 0.0 : double(num_inliers) / double(num_correspondences); }
+};
+
+struct JointResult {
+  Eigen::Isometry3d T_map_scan = Eigen::Isometry3d::Identity();
+  bool converged = false;
+  int iterations = 0;
+  Matrix6d information = Matrix6d::Zero();   ///< of all targets and the pose prior together
+  std::vector<TargetResult> targets;         ///< in the order given
+};
+
+/// Registers scans against several maps at once: the normal equations of all targets add up to one 6x6 system (and a prior on the pose, if given), solved by Gauss-Newton.
+/// A residual is the distance of a scan surfel's mean from the plane (line, point) of the nearest map surfel, whitened by the sum of that surfel's variance, the point
+/// noise, and the scan surfel's own covariance along the normal (plane to plane: Segal et al., Generalized-ICP, RSS 2009, where both normals agree; a scan surfel that does
+/// not lie in the plane weighs little). Geman-McClure kernel; its width follows, target by target and iteration by iteration, the median of the residuals.
+/// A correspondence is searched anew only when the mean has moved by half the gap between the nearest and the second-nearest surfel.
+/// One thread; keeps its buffers from scan to scan. Same bytes for the same input.
+class JointRegistration {
+ public:
+  explicit JointRegistration(const JointOptions& options = {}, InstructionSet set = InstructionSet::best);
+  ~JointRegistration();
+  JointRegistration(JointRegistration&&) noexcept;
+  JointRegistration& operator=(JointRegistration&&) noexcept;
+
+  /// Not converged: too little was found to solve for a pose (the guess comes back), or max_iterations.
+  JointResult align(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess,
+                    const std::optional<PosePrior>& prior = std::nullopt);
+
+ private:
+  struct Workspace;
+  JointOptions options_;
+  std::unique_ptr<Workspace> workspace_;
+};
+
+}  // namespace priormap

@@ -1,0 +1,26 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+namespace priormap {
+
+/// A small patch of surface by the moments of the points on it.
+struct Surfel {
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
+  float count = 0;                                       ///< points behind the moments
+  Eigen::Matrix<float, 6, 1> covariance = Eigen::Matrix<float, 6, 1>::Zero();  ///< of the points: xx, xy, xz, yy, yz, zz [m^2]
+};
+
+/// Moments of the union of the points of both.
+void merge(Surfel& into, const Surfel& from);
+
+/// Surfels of one scan, in its frame, relative to a double origin (as PointCloud).
+struct SurfelCloud {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  std::vector<Surfel> surfels;
+
+  std::size_t size() const { return surfels.size(); }
+  bool empty() const { return surfels.empty(); }
+};
+
+}  // namespace priormap

@@ -1,0 +1,75 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+/// The inner loops of the registration, compiled once for each instruction set from kernels.inl. Plain data only: an inline function of a library
+/// compiled here with AVX could be the copy that the linker keeps for all, and then the program would not run on older machines.
+namespace priormap::kernels {
+
+struct BlockView {
+  const std::uint16_t* begin;
+  const float *x, *y, *z;
+};
+
+struct MapView {
+  const std::uint32_t* slots;  // as VoxelIndex
+  std::uint32_t mask;
+  const std::int32_t* keys;    // 3 a block
+  const BlockView* blocks;
+  float voxel_m;
+};
+
+struct Pose {
+  float R[9];  // row by row
+  float t[3];
+};
+
+/// Scan surfels as structure of arrays, `padded` long: a multiple of 16, the rest zero.
+struct Source {
+  std::size_t count, padded;
+  const float *x, *y, *z;
+  const float* covariance[6];
+  const float* variance;  // to be added to that of the target
+};
+
+/// For each scan surfel what it is compared with; isotropic = directed = 0: nothing.
+struct Correspondences {
+  float *x, *y, *z;     // mean of the map surfel
+  float *nx, *ny, *nz;
+  float *isotropic, *directed;
+  float* variance;
+};
+
+struct Nearest {
+  std::uint32_t* block;   // none: 0xffffffff
+  std::uint32_t* entry;
+  float *squared, *second_squared;
+};
+
+/// Sums in the axes of the map: order xx xy xz xr.. of the upper triangle row by row, tangent [rotation about the sensor, translation].
+struct Sums {
+  float H[21];
+  float g[6];
+  float correspondences, inliers, inlier_squares;
+};
+
+struct Table {
+  /// out = R p + t.
+  void (*transform)(const Pose& pose, const Source& source, float* x, float* y, float* z);
+  /// The nearest and second-nearest mean within the 27 voxels for the queries `which`, given relative to the corner of voxel `anchor`.
+  void (*find_nearest)(const MapView& map, const std::int32_t* anchor, const float* x, const float* y, const float* z, const std::uint32_t* which,
+                       std::size_t count, const Nearest& out);
+  /// Squared residual over its variance; -1 where there is no correspondence. x, y, z as from transform.
+  void (*whitened)(const Pose& pose, const Source& source, const Correspondences& c, const float* x, const float* y, const float* z, float* out);
+  /// Adds up the normal equations with Geman-McClure weights of squared width `width2` on the whitened squares.
+  void (*accumulate)(const Pose& pose, const Source& source, const Correspondences& c, const float* x, const float* y, const float* z, float width2,
+                     Sums& sums);
+};
+
+extern const Table portable;
+#if defined(__x86_64__)
+extern const Table avx2;
+extern const Table avx512;
+#endif
+
+}  // namespace priormap::kernels

@@ -1,0 +1,3 @@
+#define LANES 8
+#define TABLE avx2
+#include "kernels.inl"

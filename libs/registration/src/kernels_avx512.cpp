@@ -1,0 +1,3 @@
+#define LANES 16
+#define TABLE avx512
+#include "kernels.inl"

@@ -1,0 +1,3 @@
+#define LANES 4
+#define TABLE portable
+#include "kernels.inl"

@@ -1,0 +1,257 @@
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <priormap/core/error.hpp>
+#include <priormap/registration/register_joint.hpp>
+
+#include "instruction_set.hpp"
+#include "surfel_map_view.hpp"
+
+namespace priormap {
+namespace {
+
+constexpr std::size_t lanes = 16;
+
+/// The scan's surfels as the kernels read them.
+struct SourceColumns {
+  std::array<std::vector<float>, 10> columns;  // x y z, covariance, variance
+  std::size_t count = 0;
+
+  void assign(const SurfelCloud& scan, double point_sigma_m) {
+    count = scan.size();
+    const std::size_t padded = (count + lanes - 1) / lanes * lanes;
+    for (auto& column : columns) column.assign(padded, 0.0f);
+    std::fill(columns[9].begin(), columns[9].end(), 1.0f);  // keeps the padding finite
+    const Eigen::Vector3f origin = scan.origin.cast<float>();
+    const auto variance = float(point_sigma_m * point_sigma_m);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Surfel& s = scan.surfels[i];
+      for (std::size_t a = 0; a < 3; ++a) columns[a][i] = origin[Eigen::Index(a)] + s.mean[Eigen::Index(a)];
+      for (std::size_t a = 0; a < 6; ++a) columns[3 + a][i] = s.covariance[Eigen::Index(a)];
+      columns[9][i] = variance * (1.0f + 4.0f / s.count);  // the spread of a few points is not known from them
+    }
+  }
+
+  kernels::Source view() const {
+    const auto& c = columns;
+    return {count, c[0].size(), c[0].data(), c[1].data(), c[2].data(), {c[3].data(), c[4].data(), c[5].data(), c[6].data(), c[7].data(), c[8].data()},
+            c[9].data()};
+  }
+};
+
+kernels::Pose kernel_pose(const Eigen::Isometry3d& T, const Eigen::Vector3d& corner) {
+  kernels::Pose pose;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) pose.R[3 * r + c] = float(T.linear()(r, c));
+    pose.t[r] = float(T.translation()[r] - corner[r]);
+  }
+  return pose;
+}
+
+/// Normal equations of one target in sensor axes.
+struct Linearization {
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d g = Vector6d::Zero();
+  std::size_t correspondences = 0, inliers = 0;
+  double inlier_squares = 0;
+  double scale = 0;
+};
+
+/// Turns sums in map axes into sensor axes.
+Linearization from_sums(const kernels::Sums& sums, const Eigen::Matrix3d& R_map_sensor) {
+  Matrix6d H;
+  for (int r = 0, k = 0; r < 6; ++r)
+    for (int c = r; c < 6; ++c) H(r, c) = H(c, r) = double(sums.H[k++]);
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R_map_sensor.transpose();
+  Linearization out;
+  out.H = turn * H * turn.transpose();
+  out.H = (0.5 * (out.H + out.H.transpose())).eval();
+  for (int r = 0; r < 6; ++r) out.g[r] = double(sums.g[r]);
+  out.g = (turn * out.g).eval();
+  out.correspondences = std::size_t(sums.correspondences);
+  out.inliers = std::size_t(sums.inliers);
+  out.inlier_squares = double(sums.inlier_squares);
+  return out;
+}
+
+/// One map and the correspondences with it, kept from iteration to iteration.
+class TargetState {
+ public:
+  void begin(const JointTarget& target, std::size_t count, std::size_t padded, const Eigen::Isometry3d& guess) {
+    target_ = target;
+    view_.emplace(*target.map);
+    anchor_ = view_->anchor_voxel(guess.translation());
+    count_ = count;
+    for (auto& column : columns_) column.assign(padded, 0.0f);
+    std::fill(columns_[variance].begin(), columns_[variance].end(), 1.0f);
+    gap2_.assign(count, -1.0f);
+    for (auto* indices : {&block_, &entry_}) indices->resize(count);
+    for (auto* squares : {&squared_, &second_squared_}) squares->resize(count);
+  }
+
+  Linearization linearize(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T, const JointOptions& options) {
+    const kernels::Pose pose = kernel_pose(T, view_->corner(anchor_));
+    table.transform(pose, source, data(x), data(y), data(z));
+    search(table, options);
+    const kernels::Correspondences c = correspondences();
+    table.whitened(pose, source, c, data(x), data(y), data(z), data(whitened));
+    const double scale = robust_scale(options);
+    kernels::Sums sums;
+    table.accumulate(pose, source, c, data(x), data(y), data(z), float(std::pow(options.kernel_width * scale, 2)), sums);
+    Linearization out = from_sums(sums, T.linear());
+    out.scale = scale;
+    out.H *= target_.weight / (scale * scale);
+    out.g *= target_.weight / (scale * scale);
+    return out;
+  }
+
+ private:
+  enum Column { x, y, z, searched_x, searched_y, searched_z, mean_x, mean_y, mean_z, normal_x, normal_y, normal_z, isotropic, directed, variance, whitened };
+
+  float* data(Column c) { return columns_[c].data(); }
+  kernels::Correspondences correspondences() {
+    return {data(mean_x), data(mean_y), data(mean_z), data(normal_x), data(normal_y), data(normal_z), data(isotropic), data(directed), data(variance)};
+  }
+
+  void search(const kernels::Table& table, const JointOptions& options) {
+    moved_.clear();
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      const float dx = columns_[x][i] - columns_[searched_x][i], dy = columns_[y][i] - columns_[searched_y][i],
+                  dz = columns_[z][i] - columns_[searched_z][i];
+      if (dx * dx + dy * dy + dz * dz > gap2_[i]) moved_.push_back(i);
+    }
+    table.find_nearest(view_->kernel_view(), anchor_.data(), data(x), data(y), data(z), moved_.data(), moved_.size(),
+                       {block_.data(), entry_.data(), squared_.data(), second_squared_.data()});
+    for (const std::uint32_t i : moved_) keep(i, options);
+  }
+
+  void keep(std::uint32_t i, const JointOptions& options) {
+    for (int a = 0; a < 3; ++a) columns_[std::size_t(searched_x + a)][i] = columns_[std::size_t(x + a)][i];
+    const bool found = block_[i] != VoxelIndex::none && double(squared_[i]) <= options.max_distance_m * options.max_distance_m;
+    const SurfelShape shape = found ? view_->shape(block_[i], entry_[i]) : SurfelShape{};
+    columns_[isotropic][i] = shape.isotropic;
+    columns_[directed][i] = shape.directed;
+    if (!found) {
+      gap2_[i] = -1.0f;
+      return;
+    }
+    // What lies outside the 27 voxels is at least a voxel away.
+    const float second = std::min(std::sqrt(second_squared_[i]), view_->kernel_view().voxel_m);
+    const float gap = 0.5f * (second - std::sqrt(squared_[i]));
+    gap2_[i] = gap > 0 ? gap * gap : -1.0f;
+    const Eigen::Vector3f mean = view_->mean(block_[i], entry_[i], anchor_);
+    for (int a = 0; a < 3; ++a) {
+      columns_[std::size_t(mean_x + a)][i] = mean[a];
+      columns_[std::size_t(normal_x + a)][i] = shape.normal[a];
+    }
+    columns_[variance][i] = float(target_.sigma_m * target_.sigma_m) + shape.sigma_m * shape.sigma_m;
+  }
+
+  /// 1.4826 times the median of the whitened residuals, from at most some thousand of them.
+  double robust_scale(const JointOptions& options) {
+    const std::size_t stride = std::max<std::size_t>(1, count_ / 1024);
+    sample_.clear();
+    for (std::size_t i = 0; i < count_; i += stride)
+      if (columns_[whitened][i] >= 0) sample_.push_back(columns_[whitened][i]);
+    if (sample_.empty()) return options.min_scale;
+    const auto middle = sample_.begin() + std::ptrdiff_t(sample_.size() / 2);
+    std::nth_element(sample_.begin(), middle, sample_.end());
+    return std::max(options.min_scale, 1.4826 * std::sqrt(double(*middle)));
+  }
+
+  JointTarget target_;
+  std::optional<SurfelMapView> view_;
+  Eigen::Vector3i anchor_ = Eigen::Vector3i::Zero();
+  std::size_t count_ = 0;
+  std::array<std::vector<float>, whitened + 1> columns_;
+  std::vector<float> gap2_, squared_, second_squared_, sample_;
+  std::vector<std::uint32_t> block_, entry_, moved_;
+};
+
+/// A length that makes rotations and translations of one information matrix comparable.
+double lever_arm(const Matrix6d& H) {
+  const double translation = H.bottomRightCorner<3, 3>().trace();
+  return translation > 0 ? std::sqrt(H.topLeftCorner<3, 3>().trace() / translation) : 1.0;
+}
+
+/// Step towards the minimum, none in directions with less than `least` of the information of the strongest.
+Vector6d step_within_observed(const Matrix6d& H, const Vector6d& g, double least) {
+  const double arm = std::max(lever_arm(H), 1e-6);
+  Vector6d unit;
+  unit << Eigen::Vector3d::Constant(1.0 / arm), Eigen::Vector3d::Ones();
+  const Matrix6d scaled = unit.asDiagonal() * H * unit.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled);
+  const Vector6d values = solver.eigenvalues();
+  if (!(values[5] > 0)) return Vector6d::Zero();
+  const Vector6d inverse = (values.array() > least * values[5]).select(values.cwiseInverse(), 0.0);
+  return -(unit.asDiagonal() * (solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose() * (unit.asDiagonal() * g)));
+}
+
+TargetResult result_of(const Linearization& l, const Eigen::Isometry3d& T, const Vector6d& last_step) {
+  TargetResult out;
+  out.num_correspondences = l.correspondences;
+  out.num_inliers = l.inliers;
+  out.inlier_rmse_m = l.inliers == 0 ? 0.0 : std::sqrt(l.inlier_squares / double(l.inliers));
+  out.scale = l.scale;
+  out.information = l.H;
+  out.gradient = l.g + l.H * last_step;
+  out.T_map_scan = retract(T, step_within_observed(l.H, out.gradient, 1e-3));
+  return out;
+}
+
+}  // namespace
+
+struct JointRegistration::Workspace {
+  const kernels::Table* table;
+  SourceColumns source;
+  std::vector<TargetState> targets;
+};
+
+JointRegistration::JointRegistration(const JointOptions& options, InstructionSet set)
+    : options_(options), workspace_(std::make_unique<Workspace>(Workspace{&kernels_for(set), {}, {}})) {
+  if (!(options.point_sigma_m > 0) || !(options.kernel_width > 0) || !(options.min_scale > 0))
+    throw UsageError("registration: point sigma, kernel width and scale must be above 0");
+}
+JointRegistration::~JointRegistration() = default;
+JointRegistration::JointRegistration(JointRegistration&&) noexcept = default;
+JointRegistration& JointRegistration::operator=(JointRegistration&&) noexcept = default;
+
+JointResult JointRegistration::align(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess,
+                                     const std::optional<PosePrior>& prior) {
+  Workspace& w = *workspace_;
+  w.source.assign(scan, options_.point_sigma_m);
+  const kernels::Source source = w.source.view();
+  w.targets.resize(targets.size());
+  for (std::size_t t = 0; t < targets.size(); ++t) w.targets[t].begin(targets[t], source.count, source.padded, guess);
+
+  JointResult result;
+  result.T_map_scan = guess;
+  std::vector<Linearization> parts(targets.size());
+  Vector6d step = Vector6d::Zero();
+  while (!result.converged && result.iterations < options_.max_iterations) {
+    Matrix6d H = Matrix6d::Zero();
+    Vector6d g = Vector6d::Zero();
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+      parts[t] = w.targets[t].linearize(*w.table, source, result.T_map_scan, options_);
+      H += parts[t].H;
+      g += parts[t].g;
+    }
+    if (prior) {
+      H += prior->information;
+      g += prior->information * local_coordinates(prior->T_map_scan, result.T_map_scan);
+    }
+    result.information = H;
+    step = step_within_observed(H, g, 1e-7);
+    if (step.isZero(0)) break;
+    result.T_map_scan = retract(result.T_map_scan, step);
+    result.converged = step.tail<3>().norm() < options_.translation_epsilon_m && step.head<3>().norm() < options_.rotation_epsilon_rad;
+    ++result.iterations;
+  }
+  for (const Linearization& part : parts) result.targets.push_back(result_of(part, result.T_map_scan, step));
+  return result;
+}
+
+}  // namespace priormap

@@ -1,0 +1,68 @@
+#include "surfel_block.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "surfel_shape.hpp"
+
+namespace priormap {
+
+/// Whether the item speaks of the same piece of surface as an entry of its voxel.
+bool SurfelMap::Block::belongs(const Entry& entry, const Item& item, const SurfelMapOptions& options) {
+  const bool of_moments = entry.normal_sum.isZero(0);
+  if (item.normal.isZero(0) || of_moments) return item.normal.isZero(0) && of_moments;
+  const Eigen::Vector3f normal = entry.normal_sum.normalized();
+  return normal.dot(item.normal) > float(std::cos(options.plane_angle_rad)) &&
+         std::abs(normal.dot(item.surfel.mean - entry.surfel.mean)) < float(options.plane_offset_m);
+}
+
+void SurfelMap::Block::merge(std::span<const Item> items, std::span<const std::uint32_t> order, const SurfelMapOptions& options) {
+  const std::size_t before = entries_.size();
+  for (const std::uint32_t i : order) {
+    const Item& item = items[i];
+    const auto same = [&](const Entry& entry) { return entry.voxel == item.voxel && belongs(entry, item, options); };
+    const auto in_voxel = entries_.begin() + begin_[item.voxel], after_voxel = entries_.begin() + begin_[item.voxel + 1];
+    auto entry = std::find_if(in_voxel, after_voxel, same);
+    if (entry == after_voxel) entry = std::find_if(entries_.begin() + std::ptrdiff_t(before), entries_.end(), same);
+    if (entry == entries_.end()) {
+      entries_.push_back({item.surfel, item.normal, item.sigma_m * item.sigma_m, item.voxel, true});
+      continue;
+    }
+    if (entry->surfel.count >= float(options.max_count)) continue;
+    priormap::merge(entry->surfel, item.surfel);
+    entry->normal_sum += item.normal;
+    entry->variance_sum += item.sigma_m * item.sigma_m;
+    entry->changed = true;
+  }
+  if (entries_.size() != before) order_by_voxel();
+  remake_shapes(float(options.voxel_m));
+}
+
+void SurfelMap::Block::order_by_voxel() {
+  std::array<std::uint16_t, voxels_a_block + 1> next{};
+  for (const Entry& entry : entries_) ++next[entry.voxel + 1u];
+  for (std::size_t v = 0; v < voxels_a_block; ++v) next[v + 1] = std::uint16_t(next[v + 1] + next[v]);
+  begin_ = next;
+  std::vector<Entry> ordered(entries_.size());
+  for (const Entry& entry : entries_) {
+    ordered[next[entry.voxel]] = entry;
+    ordered[next[entry.voxel]++].changed = true;
+  }
+  entries_ = std::move(ordered);
+  shapes_.resize(entries_.size());
+  for (auto* column : {&x_, &y_, &z_}) column->resize(entries_.size() + lane_padding);
+}
+
+void SurfelMap::Block::remake_shapes(float voxel_m) {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    Entry& entry = entries_[i];
+    if (!entry.changed) continue;
+    entry.changed = false;
+    x_[i] = entry.surfel.mean.x(), y_[i] = entry.surfel.mean.y(), z_[i] = entry.surfel.mean.z();
+    shapes_[i] = entry.normal_sum.isZero(0)
+                     ? shape_of_moments(entry.surfel, voxel_m)
+                     : SurfelShape{entry.normal_sum.normalized(), 0, 1, std::sqrt(entry.variance_sum / entry.surfel.count)};
+  }
+}
+
+}  // namespace priormap

@@ -1,0 +1,55 @@
+#pragma once
+#include <array>
+#include <priormap/registration/surfel_map.hpp>
+#include <span>
+#include <vector>
+
+namespace priormap {
+
+constexpr int block_voxels = 8;  // along an edge
+constexpr int voxels_a_block = block_voxels * block_voxels * block_voxels;
+constexpr std::size_t lane_padding = 16;  // whole SIMD registers may be read past the last surfel
+
+/// What is about to be merged into a block: a surfel, or a single point with a known normal.
+struct SurfelMap::Item {
+  std::uint32_t block = 0;
+  std::uint16_t voxel = 0;  // within the block, x fastest
+  float sigma_m = 0;
+  Surfel surfel;  // relative to the block's corner
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+};
+
+/// 8 x 8 x 8 voxels. Surfels lie in the order of their voxels, and within a voxel in the order of their making.
+class SurfelMap::Block {
+ public:
+  /// Merges the items in order; the shapes of what changed are made anew.
+  void merge(std::span<const Item> items, std::span<const std::uint32_t> order, const SurfelMapOptions& options);
+
+  std::size_t size() const { return entries_.size(); }
+  const Surfel& surfel(std::size_t i) const { return entries_[i].surfel; }
+  const SurfelShape& shape(std::size_t i) const { return shapes_[i]; }
+  const std::uint16_t* begin() const { return begin_.data(); }  ///< surfels of voxel v: begin()[v] .. begin()[v + 1]
+  const float* x() const { return x_.data(); }
+  const float* y() const { return y_.data(); }
+  const float* z() const { return z_.data(); }
+
+ private:
+  struct Entry {
+    Surfel surfel;
+    Eigen::Vector3f normal_sum = Eigen::Vector3f::Zero();  // zero: the normal comes from the moments
+    float variance_sum = 0;
+    std::uint16_t voxel = 0;
+    bool changed = true;
+  };
+
+  static bool belongs(const Entry& entry, const Item& item, const SurfelMapOptions& options);
+  void order_by_voxel();
+  void remake_shapes(float voxel_m);
+
+  std::array<std::uint16_t, voxels_a_block + 1> begin_{};
+  std::vector<float> x_, y_, z_;  // means, padded by lane_padding
+  std::vector<SurfelShape> shapes_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace priormap

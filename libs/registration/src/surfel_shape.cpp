@@ -1,0 +1,34 @@
+#include "surfel_shape.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace priormap {
+
+SurfelShape shape_of_moments(const Surfel& surfel, float voxel_m) {
+  constexpr float least_points = 6, flatness = 0.1f, upright = 0.9f;
+  const float thin = 0.15f * voxel_m;
+  SurfelShape shape;
+  if (surfel.count < least_points) return shape;
+  const auto& c = surfel.covariance;
+  Eigen::Matrix3f covariance;
+  covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(covariance);
+  const Eigen::Vector3f l = solver.eigenvalues().cwiseMax(0.0f);
+  if (l[0] < flatness * l[1] && l[0] < thin * thin) {
+    shape.normal = solver.eigenvectors().col(0);
+    shape.directed = 1;
+    shape.sigma_m = std::sqrt(l[0]);
+  } else if (l[1] < flatness * l[2] && l[1] < thin * thin && std::abs(solver.eigenvectors()(2, 2)) > upright) {
+    // A pole or trunk. A line that lies flat is the trace of one laser on the ground: it travels with the sensor and binds nothing.
+    shape.normal = solver.eigenvectors().col(2);
+    shape.isotropic = 1;
+    shape.directed = -1;
+    shape.sigma_m = std::sqrt(l[1]);
+  }
+  return shape;
+}
+
+}  // namespace priormap

@@ -1,0 +1,33 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <priormap/registration/observability.hpp>
+#include <priormap/registration/register_joint.hpp>
+#include <priormap/registration/scan_reducer.hpp>
+
+#include "street.hpp"
+
+using namespace priormap;
+
+namespace {
+
+const Eigen::Vector3d far_origin(21000, -9000, 116);
+
+TEST(JointRegistration, FindsThePoseWithinAMillimetreOfAnExactPrior) {
+  const street::World world = street::town(100, 3, far_origin);
+  SurfelMap prior;
+  prior.insert(street::sample(world, 0.5, 0.0f));
+  const Eigen::Isometry3d truth = street::pose(far_origin.x() + 50, far_origin.y() + 1, far_origin.z() + 1.8, 0.1);
+  const SurfelCloud scan = ScanReducer(1.0).reduce(street::scan(world, truth, {.noise_m = 0}, 1));
+  const JointTarget target{&prior};
+  JointRegistration registration;
+  for (const auto& off : {street::pose(0.5, 0.3, 0.1, 0.035), street::pose(-0.4, -0.5, -0.2, -0.035)}) {
+    const JointResult result = registration.align(scan, {&target, 1}, truth * off);
+    EXPECT_TRUE(result.converged);
+    EXPECT_LT(street::distance(result.T_map_scan, truth), 0.01);
+    EXPECT_LT(street::angle(result.T_map_scan, truth), 5e-4);
+    EXPECT_GT(result.targets[0].inlier_share(), 0.7);
+  }
+}
+
+}  // namespace

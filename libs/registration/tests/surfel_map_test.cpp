@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <priormap/core/error.hpp>
+#include <priormap/registration/scan_reducer.hpp>
+#include <priormap/registration/surfel_map.hpp>
+#include <random>
+
+#include "street.hpp"
+
+using namespace priormap;
+
+namespace {
+
+const InstructionSet all_sets[] = {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512};
+
+TEST(SurfelMap, NearestEqualsASearchOfAllSurfelsInThe27Voxels) {
+  const Eigen::Vector3d origin(31234.5, -17321.25, 512.125);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> u(-12, 12);
+  PointCloud cloud;
+  cloud.origin = origin;
+  for (int i = 0; i < 6000; ++i) {
+    const double x = u(random), y = u(random), z = 0.3 * u(random);
+    cloud.xyz.push_back(Eigen::Vector3d(x, y, z).cast<float>());
+    cloud.normal.push_back(i % 3 == 0 ? Eigen::Vector3f(0, 0, 1) : Eigen::Vector3f(i % 3 == 1, i % 3 == 2, 0));
+  }
+  SurfelMap map({.voxel_m = 1.5});
+  map.insert(cloud);
+  const PointCloud held = map.points(origin);
+  for (int trial = 0; trial < 500; ++trial) {
+    const Eigen::Vector3d query = origin + Eigen::Vector3d(u(random), u(random), 0.3 * u(random));
+    double best = INFINITY, second = INFINITY;
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      const Eigen::Vector3d p = held.position(i);
+      if ((((p / 1.5).array().floor() - (query / 1.5).array().floor()).abs() > 1.0).any()) continue;
+      const double d = (p - query).norm();
+      if (d < best) second = std::exchange(best, d);
+      else second = std::min(second, d);
+    }
+    for (const InstructionSet set : all_sets) {
+      if (!is_available(set)) continue;
+      const auto match = map.nearest(query, set);
+      ASSERT_EQ(match.has_value(), std::isfinite(best));
+      if (!match) continue;
+      EXPECT_NEAR(match->distance_m, best, 1e-4);
+      EXPECT_NEAR((match->mean - query).norm(), best, 1e-4);
+      if (std::isfinite(second)) {
+        EXPECT_NEAR(match->second_distance_m, second, 1e-4);
+      } else {
+        EXPECT_EQ(match->second_distance_m, INFINITY);
+      }
+    }
+  }
+}
+
+TEST(SurfelMap, AVoxelAtACornerKeepsItsThreePlanesApart) {
+  PointCloud corner;
+  for (float a = 0.05f; a < 1; a += 0.1f)
+    for (float b = 0.05f; b < 1; b += 0.1f) {
+      corner.xyz.emplace_back(a, b, 0.f), corner.normal.emplace_back(0, 0, 1);
+      corner.xyz.emplace_back(a, 0.f, b), corner.normal.emplace_back(0, 1, 0);
+      corner.xyz.emplace_back(0.f, a, b), corner.normal.emplace_back(1, 0, 0);
+    }
+  SurfelMap map;
+  map.insert(corner);
+  EXPECT_EQ(map.size(), 3u);
+  const auto match = map.nearest({0.5, 0.5, -0.2});
+  ASSERT_TRUE(match);
+  EXPECT_EQ(match->shape.normal, Eigen::Vector3f(0, 0, 1));
+  EXPECT_LT((match->mean - Eigen::Vector3d(0.5, 0.5, 0)).norm(), 1e-6);
+  EXPECT_EQ(match->shape.directed, 1.0f);
+}
+
+TEST(SurfelMap, ScansAddUpToTheSurfaceTheyShow) {
+  // A wall turned by 30 degrees, seen in five scans from different places, each a sparse part of it.
+  const Eigen::Vector3d normal(std::cos(0.5), std::sin(0.5), 0), along(-std::sin(0.5), std::cos(0.5), 0);
+  const Eigen::Vector3d foot(40123.3, 9876.1, 50);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> u(0, 4);
+  std::normal_distribution<double> noise(0, 0.02);
+  SurfelMap map;
+  for (int k = 0; k < 5; ++k) {
+    const Eigen::Isometry3d T = street::pose(foot.x() + k, foot.y() - 2 * k, foot.z() + 1, 0.3 * k);
+    PointCloud scan;
+    for (int i = 0; i < 400; ++i) {
+      const double a = u(random), z = u(random);
+      scan.xyz.push_back((T.inverse() * (foot + a * along + z * Eigen::Vector3d::UnitZ() + noise(random) * normal)).cast<float>());
+    }
+    map.insert(ScanReducer(0.5).reduce(scan), T);
+  }
+  int planes = 0;
+  const PointCloud held = map.points(foot);
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    EXPECT_NEAR(normal.dot(held.xyz[i].cast<double>()), 0, 0.02);
+    if (held.normal[i].isZero()) continue;
+    ++planes;
+    EXPECT_GT(std::abs(normal.dot(held.normal[i].cast<double>())), 0.98);
+  }
+  EXPECT_GT(planes, 16);
+}
+
+TEST(SurfelMap, ForgetsBlocksThatAreFarAndKeepsTheRest) {
+  SurfelMap map;
+  PointCloud line;
+  for (int x = 0; x < 400; ++x) line.xyz.emplace_back(float(x) + 0.5f, 0.5f, 0.5f);
+  map.insert(line);
+  EXPECT_EQ(map.size(), 400u);
+  map.remove_beyond({200, 4, 4}, 100);
+  EXPECT_LE(map.size(), 208u);
+  EXPECT_GE(map.size(), 192u);
+  EXPECT_FALSE(map.nearest({50, 0.5, 0.5}));
+  EXPECT_NEAR(map.nearest({150.5, 0.5, 0.7})->distance_m, 0.2, 1e-6);
+  map.insert(line);
+  EXPECT_EQ(map.size(), 400u);
+  EXPECT_NEAR(map.nearest({50.5, 0.5, 0.7})->distance_m, 0.2, 1e-6);
+}
+
+TEST(SurfelMap, RefusesAVoxelWithoutSize) { EXPECT_THROW(SurfelMap({.voxel_m = 0}), UsageError); }
+
+}  // namespace

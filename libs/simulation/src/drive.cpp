@@ -1,0 +1,216 @@
+#include <priormap/simulation/drive.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <fstream>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+#include <priormap/core/error.hpp>
+#include <priormap/core/parallel.hpp>
+#include <priormap/core/version.hpp>
+#include <priormap/simulation/random.hpp>
+
+#include "drive_plan.hpp"
+#include "polyline.hpp"
+#include "stream.hpp"
+
+namespace priormap {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+[[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...) {
+  char text[512];
+  va_list values;
+  va_start(values, pattern);
+  std::vsnprintf(text, sizeof text, pattern, values);
+  va_end(values);
+  return text;
+}
+
+/// A file written in one go; a full disk is an error.
+void write_file(const fs::path& file, const void* bytes, std::size_t size) {
+  std::ofstream out(file, std::ios::binary);
+  out.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+  out.close();
+  if (!out) throw IoError(file, "cannot be written (disk full?)");
+}
+
+void write_text(const fs::path& file, const std::string& text) { write_file(file, text.data(), text.size()); }
+
+std::string scan_name(std::size_t index) { return format("%06zu", index); }
+
+std::string quaternion_text(const Eigen::Matrix3d& rotation, char separator) {
+  Eigen::Quaterniond q(rotation);
+  if (q.w() < 0) q.coeffs() = -q.coeffs();
+  return format("%.9f%c%.9f%c%.9f%c%.9f", q.x(), separator, q.y(), separator, q.z(), separator, q.w());
+}
+
+void write_trajectory(const fs::path& file, const DrivePath& path, const MapFrame& frame) {
+  std::vector<Eigen::Vector3d> lon_lat;
+  for (const auto& pose : path.poses) lon_lat.push_back(pose.translation());
+  frame.to_lon_lat(lon_lat);
+  std::string text = "index,stamp_s,x_m,y_m,z_m,qx,qy,qz,qw,lon_deg,lat_deg\n";
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const Eigen::Isometry3d T_projected_sensor = frame.pose_to_projected(path.poses[i]);
+    const Eigen::Vector3d& p = T_projected_sensor.translation();
+    text += format("%zu,%.6f,%.4f,%.4f,%.4f,", i, path.stamps_s[i], p.x(), p.y(), p.z()) + quaternion_text(T_projected_sensor.linear(), ',') +
+            format(",%.10f,%.10f\n", lon_lat[i].x(), lon_lat[i].y());
+  }
+  write_text(file, text);
+}
+
+void write_kitti_poses(const fs::path& file, const DrivePath& path) {
+  std::string text;
+  for (const Eigen::Isometry3d& pose : path.poses)
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c) text += format("%.9e", pose(r, c)) + (r == 2 && c == 3 ? '\n' : ' ');
+  write_text(file, text);
+}
+
+void write_times(const fs::path& file, const DrivePath& path) {
+  std::string text;
+  for (const double stamp_s : path.stamps_s) text += format("%.6f\n", stamp_s);
+  write_text(file, text);
+}
+
+/// The first pose as a user would know it: moved and turned by the start error, in a direction drawn by lot.
+void write_initial_pose(const fs::path& file, const DrivePath& path, const MapFrame& frame, const DriveOptions& options) {
+  Random random(options.seed, {stream::initial_pose});
+  const double direction = random.uniform(0, 2 * std::numbers::pi), sense = random.chance(0.5) ? 1 : -1;
+  Eigen::Isometry3d start = path.poses.front();
+  start.translation() += options.route.start_error_m * Eigen::Vector3d(std::cos(direction), std::sin(direction), 0);
+  start.linear() = Eigen::AngleAxisd(sense * options.route.start_error_deg * std::numbers::pi / 180, Eigen::Vector3d::UnitZ()) * start.linear();
+  const Eigen::Isometry3d T_projected_sensor = frame.pose_to_projected(start);
+  const Eigen::Vector3d& p = T_projected_sensor.translation();
+  write_text(file, format("%.4f,%.4f,%.4f,", p.x(), p.y(), p.z()) + quaternion_text(T_projected_sensor.linear(), ',') + "\n");
+}
+
+void write_frame(const fs::path& file, const MapFrame& frame, const DriveOptions& options) {
+  const GeoPoint origin = frame.origin();
+  const Json json{{"crs", frame.projected().name()},
+                  {"map_frame", {{"proj", frame.definition()},
+                                 {"origin_lon_deg", origin.lon_deg},
+                                 {"origin_lat_deg", origin.lat_deg},
+                                 {"scale_factor", frame.scale_factor()}}},
+                  {"sensor", options.sensor}};
+  write_text(file, json.dump(2) + "\n");
+}
+
+void write_building_errors(const fs::path& file, const Town& town, const std::vector<BuildingError>& errors) {
+  std::string text = "id,missing,shift_x_m,shift_y_m,rotation_deg,has_height,has_levels,height_error_m,true_height_m,ground_z_m,surveyed,x_map_m,y_map_m\n";
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const Building& building = town.buildings[i];
+    const BuildingError& error = errors[i];
+    text += building.id + format(",%d,%.4f,%.4f,%.5f,%d,%d,%.3f,%.3f,%.3f,%d,%.3f,%.3f\n", error.missing, error.shift_m.x(), error.shift_m.y(),
+                                 error.rotation * 180 / std::numbers::pi, error.has_height_tag, error.has_levels_tag, error.height_error_m,
+                                 building.height_m(), building.ground_z, building.surveyed, building.outline.exterior[0].x(),
+                                 building.outline.exterior[0].y());
+  }
+  write_text(file, text);
+}
+
+template <class Options>
+Json json_of(Options options) {
+  Json json = Json::object();
+  auto visit = [&](const std::string& name, const auto& value, const OptionField&) {
+    if constexpr (requires { value.has_value(); }) {
+      if (value) json[name] = *value;
+    } else {
+      json[name] = value;
+    }
+  };
+  options.describe(visit);
+  return json;
+}
+
+Json manifest(const DriveOptions& options, const Town& town, const DriveSummary& summary) {
+  Json json{{"generator", "drivesim " + std::string(version)}, {"town", options.town == "generated" ? options.town : fs::path(options.town).filename().string()}};
+  if (options.trajectory) json["trajectory"] = fs::path(*options.trajectory).filename().string();
+  json["sensor"] = options.sensor;
+  json["seed"] = options.seed;
+  json["options"] = {{"route", json_of(options.route)}, {"town", json_of(options.town_options)}, {"source_errors", json_of(options.errors)},
+                     {"platform", json_of(options.platform)}, {"lidar", json_of(options.noise)}};
+  json["world"] = {{"buildings", town.buildings.size()}, {"buildings_missing_in_osm", summary.num_missing},
+                   {"buildings_without_height_in_osm", summary.num_default_height}, {"trees", town.trees.size()}, {"poles", town.poles.size()},
+                   {"parked_cars", town.parked_cars.size()}, {"barriers", town.barriers.size()}};
+  json["drive"] = {{"scans", summary.num_scans}, {"points", summary.num_points}, {"length_m", std::round(summary.length_m * 1000) / 1000}};
+  return json;
+}
+
+/// KITTI's layout: x, y, z, intensity as float32.
+void write_scan(const fs::path& directory, std::size_t index, const PointCloud& scan) {
+  std::vector<float> values;
+  values.reserve(4 * scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) values.insert(values.end(), {scan.xyz[i].x(), scan.xyz[i].y(), scan.xyz[i].z(), scan.intensity[i]});
+  write_file(directory / "velodyne" / (scan_name(index) + ".bin"), values.data(), values.size() * sizeof(float));
+  if (!scan.time_s.empty())
+    write_file(directory / "point_times" / (scan_name(index) + ".f32"), scan.time_s.data(), scan.time_s.size() * sizeof(float));
+}
+
+void write_scans(const fs::path& directory, const Lidar& lidar, const DrivePath& path, int threads, const Events& events, DriveSummary& summary) {
+  const auto start = std::chrono::steady_clock::now();
+  std::atomic<std::size_t> num_points = 0;
+  std::vector<std::size_t> sizes(path.size());
+  ordered_pipeline(path.size(), threads, static_cast<std::size_t>(4 * threads),
+                   [&](std::size_t i) {
+                     const PointCloud scan = lidar.scan(path, i);
+                     write_scan(directory, i, scan);
+                     num_points += scan.size();
+                   },
+                   [&](std::size_t i) { events.advance("scans", static_cast<double>(i + 1) / static_cast<double>(path.size())); });
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+  summary.num_scans = path.size();
+  summary.num_points = num_points;
+  summary.simulate_ms_per_scan = elapsed.count() / static_cast<double>(path.size());
+}
+
+}  // namespace
+
+DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output, Overwrite overwrite, int threads, const Events& events) {
+  AtomicDirectory directory(output, overwrite, "drive.json");
+  const fs::path& root = directory.temporary_path();
+  for (const char* folder : {"velodyne", "truth", "sources"}) fs::create_directory(root / folder);
+  if (options.noise.motion_distortion) fs::create_directory(root / "point_times");
+
+  const DrivePlan plan = plan_drive(options);
+  const Town town = generate_town(plan.town, options.town_options, options.seed);
+  const std::vector<BuildingError> errors = draw_errors(town, plan.town.driven, options.errors, options.seed);
+  const DrivePath path = ride(plan.track, town.terrain, options.platform, options.seed);
+  events.inform(format("%zu buildings, %zu trees, %zu parked cars along %.0f m of drive", town.buildings.size(), town.trees.size(),
+                       town.parked_cars.size(), length(plan.town.driven)));
+  const World world = build_world(town, options.seed);
+
+  write_osm(root / "sources" / "town.osm.pbf", osm_of(town, errors, plan.frame));
+  const Crs& crs = plan.frame.projected();
+  write_geotiff(root / "sources" / "dsm.tif", surface_model(world, town, plan.town.driven, plan.frame, options.errors, options.seed), crs);
+  write_geotiff(root / "sources" / "dtm.tif", terrain_model(town, plan.town.driven, plan.frame, options.errors, options.seed), crs);
+  write_times(root / "times.txt", path);
+  write_trajectory(root / "truth" / "trajectory.csv", path, plan.frame);
+  write_kitti_poses(root / "truth" / "poses_kitti.txt", path);
+  write_initial_pose(root / "truth" / "initial_pose.txt", path, plan.frame, options);
+  write_frame(root / "truth" / "frame.json", plan.frame, options);
+  write_building_errors(root / "truth" / "buildings.csv", town, errors);
+
+  DriveSummary summary;
+  summary.length_m = length(plan.town.driven);
+  summary.num_buildings = town.buildings.size();
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    summary.num_missing += errors[i].missing;
+    summary.num_default_height += !errors[i].missing && town.buildings[i].tags.empty() && !errors[i].has_height_tag && !errors[i].has_levels_tag;
+  }
+  LidarModel model = lidar_model(options.sensor);
+  model.rate_hz = scan_rate_hz(options);
+  write_scans(root, Lidar(world, std::move(model), options.noise, options.seed), path, threads, events, summary);
+  write_text(root / "drive.json", manifest(options, town, summary).dump(2) + "\n");
+  directory.commit();
+  return summary;
+}
+
+}  // namespace priormap

@@ -1,0 +1,136 @@
+#include "drive_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <priormap/core/error.hpp>
+#include <priormap/geodesy/transformer.hpp>
+#include <priormap/simulation/street_graph.hpp>
+
+#include "polyline.hpp"
+
+namespace priormap {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr std::size_t default_scans = 300;
+constexpr double town_margin_m = 90;   // beyond streets and track: nearly as far as the sensor sees
+
+Crs projected_crs(const RouteOptions& route) {
+  Crs crs = Crs::parse(route.crs);
+  if (!crs.is_projected()) throw CrsError("--crs " + route.crs + " is not projected; name one such as EPSG:25832+7837");
+  return crs;
+}
+
+MapFrame frame_at_origin(const RouteOptions& route) {
+  if (route.origin_lon_lat.size() != 2) throw UsageError("--origin takes LON,LAT");
+  const Crs crs = projected_crs(route);
+  const Transformer from_lon_lat(Crs::parse("EPSG:4326"), crs.horizontal());
+  Eigen::Vector3d origin = from_lon_lat.forward(Eigen::Vector3d(route.origin_lon_lat[0], route.origin_lon_lat[1], 0));
+  if (!origin.allFinite()) throw CrsError("--origin lies outside of " + route.crs);
+  origin.z() = route.origin_height_m;
+  return MapFrame::at(crs, origin);
+}
+
+Bounds2 bounds_around(const TownPlan& plan) {
+  Eigen::Vector2d low = plan.driven.front(), high = low;
+  const auto include = [&](const Eigen::Vector2d& p) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  };
+  for (const Eigen::Vector2d& p : plan.driven) include(p);
+  for (const Street& street : plan.streets)
+    for (const Eigen::Vector2d& p : street.line) include(p);
+  // Whole metres: the ground's grid does not depend on the last digit of a coordinate.
+  return {std::floor(low.x() - town_margin_m), std::floor(low.y() - town_margin_m), std::ceil(high.x() + town_margin_m), std::ceil(high.y() + town_margin_m)};
+}
+
+std::vector<Eigen::Vector2d> line_of(const std::vector<TrackPoint>& track) {
+  std::vector<Eigen::Vector2d> line;
+  for (const TrackPoint& point : track) line.push_back(point.position);
+  return line;
+}
+
+/// The recorded poses as the drive uses them: first pose at the origin of `map`, turned to its direction there.
+std::vector<Eigen::Isometry3d> recorded_in_map(const DriveOptions& options, const RecordedPoses& recorded, const MapFrame& frame) {
+  const auto first = static_cast<std::size_t>(options.route.first_scan);
+  if (first >= recorded.poses.size()) throw UsageError("--first " + std::to_string(first) + " lies beyond the trajectory's end");
+  const std::size_t left = recorded.poses.size() - first;
+  const std::size_t count = options.route.num_scans == 0 ? left : std::min(left, static_cast<std::size_t>(options.route.num_scans));
+  const Eigen::Vector3d start = recorded.poses[first].translation();
+  const Eigen::Vector3d forward = recorded.poses[first].linear().col(0);
+  // True north and map north agree at the frame's origin, where the first pose is.
+  const double turn = options.route.start_yaw_deg * degree - std::atan2(forward.y(), forward.x()) + frame.convergence(Eigen::Vector3d::Zero());
+  const Eigen::AngleAxisd R_map_recorded(turn, Eigen::Vector3d::UnitZ());
+  std::vector<Eigen::Isometry3d> poses;
+  for (std::size_t i = first; i < first + count; ++i) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = R_map_recorded * recorded.poses[i].linear();
+    pose.translation() = R_map_recorded * (recorded.poses[i].translation() - start) + Eigen::Vector3d(0, 0, options.route.origin_height_m);
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+DrivePlan plan_recorded(const DriveOptions& options) {
+  const RecordedPoses recorded = read_recorded_poses(*options.trajectory, options.route.trajectory_axes);
+  MapFrame frame = frame_at_origin(options.route);
+  const std::vector<Eigen::Isometry3d> poses = recorded_in_map(options, recorded, frame);
+  DrivePlan plan{std::move(frame), {}, {}, {}};
+  std::vector<Eigen::Vector3d> positions;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Eigen::Vector3d forward = poses[i].linear().col(0);
+    const double stamp_s = recorded.stamps_s.empty() ? static_cast<double>(i) / scan_rate_hz(options)
+                                                     : recorded.stamps_s[i + static_cast<std::size_t>(options.route.first_scan)];
+    plan.track.push_back({stamp_s, poses[i].translation().head<2>(), std::atan2(forward.y(), forward.x())});
+    positions.push_back(poses[i].translation());
+  }
+  plan.town.driven = line_of(plan.track);
+  plan.town.streets = streets_of_track(plan.town.driven);
+  plan.town.bounds = bounds_around(plan.town);
+  plan.town.relief = relief_through(positions, plan.town.bounds);
+  return plan;
+}
+
+void shift(StreetGraph& graph, const Eigen::Vector2d& by) {
+  for (Eigen::Vector2d& node : graph.nodes) node += by;
+  for (StreetGraph::Edge& edge : graph.edges)
+    for (Eigen::Vector2d& p : edge.line) p += by;
+}
+
+std::vector<TrackPoint> drive_route(const DriveOptions& options, const StreetGraph& graph) {
+  constexpr double lane_share = 0.3, spare_m = 50;
+  const RouteOptions& route = options.route;
+  const std::size_t count = route.num_scans == 0 ? default_scans : static_cast<std::size_t>(route.num_scans);
+  const DriveSpeed speed{route.speed_mps, scan_rate_hz(options)};
+  const double length_m = static_cast<double>(count) / speed.rate_hz * speed.speed_mps + (route.there_and_back ? 0 : spare_m);
+  const auto line = route_along(graph, Eigen::Vector2d::Zero(), length_m, route.there_and_back, options.seed);
+  return drive_along(line, lane_share * graph.edges.front().half_width_m, speed, count);
+}
+
+DrivePlan plan_generated(const DriveOptions& options) {
+  StreetGraph graph = grid_streets(options.route.town_size_m, options.seed);
+  shift(graph, -drive_route(options, graph).front().position);   // the frame's origin is the first pose
+  DrivePlan plan{frame_at_origin(options.route), {}, drive_route(options, graph), {}};
+  plan.town.driven = line_of(plan.track);
+  plan.town.streets = streets_of(graph);
+  plan.town.bounds = bounds_around(plan.town);
+  plan.town.relief = rolling_relief(options.route.origin_height_m, options.town_options.relief_m, options.seed);
+  return plan;
+}
+
+}  // namespace
+
+double scan_rate_hz(const DriveOptions& options) { return options.route.rate_hz.value_or(lidar_model(options.sensor).rate_hz); }
+
+DrivePlan plan_drive(const DriveOptions& options) {
+  if (options.route.trajectory_axes != "camera" && options.route.trajectory_axes != "lidar")
+    throw UsageError("--trajectory-axes is camera or lidar, not '" + options.route.trajectory_axes + "'");
+  if (options.town != "generated") throw UsageError("--town takes 'generated'");
+  DrivePlan plan = options.trajectory ? plan_recorded(options) : plan_generated(options);
+  if (plan.track.size() < 2) throw UsageError("a drive needs two scans at least");
+  return plan;
+}
+
+}  // namespace priormap

@@ -1,0 +1,21 @@
+#pragma once
+#include <priormap/geodesy/map_frame.hpp>
+#include <priormap/simulation/drive.hpp>
+#include <priormap/simulation/town_generator.hpp>
+
+namespace priormap {
+
+/// A drive before its town stands: frame `map` at the first pose, streets, ground, track.
+struct DrivePlan {
+  MapFrame frame;
+  TownPlan town;
+  std::vector<TrackPoint> track;
+  std::vector<Building> buildings;   ///< of an OSM town: outlines and tags as the file has them, not yet on the ground
+};
+
+/// @throws UsageError, CrsError, IoError, FormatError
+DrivePlan plan_drive(const DriveOptions& options);
+
+double scan_rate_hz(const DriveOptions& options);
+
+}  // namespace priormap

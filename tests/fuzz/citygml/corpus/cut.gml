@@ -1,0 +1,1 @@
+<core:CityModel xmlns:core='c' xmlns:bldg='b' xmlns:gml='g' xmlns:xlink='x'><gml:boundedBy><gml:Envelope srsName='EPSG:25832'/></gml:boundedBy><core:cityObjectMember><bldg:Building gml:id='b1'><gml:Polygon gml:id='p'><gml:exterior><gml:LinearRing><gml:posList>0 0 0 1 0 0 1 1 0 0 1 0 0 0 0</gml:posList></gml:LinearRing></gml:ext

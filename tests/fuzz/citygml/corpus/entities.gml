@@ -1,0 +1,1 @@
+<!DOCTYPE x [<!ENTITY a 'aaaaaaaaaa'><!ENTITY b '&a;&a;&a;'>]><CityModel>&b;</CityModel>
