@@ -1,5 +1,8 @@
 #include <pcl/io/pcd_io.h>
 
+#include <map>
+#include <set>
+
 #include <priormap/core/error.hpp>
 
 #include "formats/header_lines.hpp"
@@ -13,6 +16,8 @@ namespace {
 
 /// LZF, which packs binary_compressed PCD, shrinks 264 bytes to 3 at best.
 constexpr std::uint64_t best_lzf_ratio = 88;
+/// PCL counts points in 32 bits.
+constexpr std::uint64_t max_points = 0xffffffff;
 
 struct PcdPromise {
   std::uint64_t num_points = 0, point_size = 0;
@@ -20,28 +25,50 @@ struct PcdPromise {
   std::string encoding;
 };
 
-PcdPromise parse_promise(const HeaderLines& header, const std::filesystem::path& file) {
-  PcdPromise promise;
-  std::vector<std::uint64_t> sizes, counts;
+bool is_number_type(const std::string& type, std::uint64_t size) {
+  return type == "F" ? size == 4 || size == 8 : (type == "I" || type == "U") && (size == 1 || size == 2 || size == 4 || size == 8);
+}
+
+using HeaderWords = std::map<std::string, std::vector<std::string>>;
+
+/// What follows each keyword. PCL goes on with half a header where it meets a line it does not know, and then reads where nothing is.
+HeaderWords words_by_keyword(const HeaderLines& header, const std::filesystem::path& file) {
+  static const std::set<std::string> keywords = {"VERSION", "FIELDS", "COLUMNS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+  HeaderWords words_of;
   for (const auto& words : header.lines) {
-    const auto numbers = [&] {
-      std::vector<std::uint64_t> values;
-      for (std::size_t i = 1; i < words.size(); ++i) values.push_back(whole_number(words[i], file));
-      return values;
-    };
-    if (words[0] == "SIZE") sizes = numbers();
-    if (words[0] == "COUNT") counts = numbers();
-    if (words[0] == "POINTS" && words.size() == 2) promise.num_points = numbers()[0];
-    if (words[0] == "DATA" && words.size() == 2) promise.encoding = words[1];
+    if (words[0].starts_with('#')) continue;
+    if (!keywords.contains(words[0])) throw FormatError(file, "is no usable PCD: '" + words[0].substr(0, 40) + "' is no line of its header");
+    if (!words_of.emplace(words[0], std::vector<std::string>(words.begin() + 1, words.end())).second)
+      throw FormatError(file, "is no usable PCD: " + words[0] + " stands twice in its header");
   }
-  if (counts.empty()) counts.assign(sizes.size(), 1);
-  if (counts.size() != sizes.size()) throw FormatError(file, "is no usable PCD: SIZE and COUNT differ in length");
+  if (words_of.contains("COLUMNS")) words_of["FIELDS"] = words_of["COLUMNS"];
+  for (const char* needed : {"FIELDS", "SIZE", "TYPE", "WIDTH", "HEIGHT", "POINTS", "DATA"})
+    if (words_of[needed].empty()) throw FormatError(file, std::string("is no usable PCD: ") + needed + " is missing in its header");
+  return words_of;
+}
+
+PcdPromise parse_promise(const HeaderLines& header, const std::filesystem::path& file) {
+  const HeaderWords words_of = words_by_keyword(header, file);
+  const auto numbers = [&](const char* keyword) {
+    std::vector<std::uint64_t> values;
+    for (const std::string& word : words_of.at(keyword)) values.push_back(whole_number(word, file));
+    return values;
+  };
+  const std::vector<std::uint64_t> sizes = numbers("SIZE");
+  const std::vector<std::uint64_t> counts = words_of.contains("COUNT") ? numbers("COUNT") : std::vector<std::uint64_t>(sizes.size(), 1);
+  const std::vector<std::string>& types = words_of.at("TYPE");
+  if (counts.size() != sizes.size() || types.size() != sizes.size() || words_of.at("FIELDS").size() != sizes.size())
+    throw FormatError(file, "is no usable PCD: FIELDS, SIZE, TYPE and COUNT differ in length");
+  PcdPromise promise{.num_points = numbers("POINTS")[0], .encoding = words_of.at("DATA")[0]};
+  const std::uint64_t width = numbers("WIDTH")[0], height = numbers("HEIGHT")[0];
+  if (width > max_points || height > max_points || width * height != promise.num_points || promise.num_points > max_points)
+    throw FormatError(file, "is no usable PCD: WIDTH times HEIGHT is not POINTS");
   for (std::size_t i = 0; i < sizes.size(); ++i) {
-    if (sizes[i] > 8 || counts[i] > 65536) throw FormatError(file, "is no usable PCD: SIZE or COUNT is out of range");
+    if (!is_number_type(types[i], sizes[i]) || counts[i] == 0 || counts[i] > 65536)
+      throw FormatError(file, "is no usable PCD: SIZE, TYPE or COUNT of field " + std::to_string(i + 1) + " is out of range");
     promise.point_size += sizes[i] * counts[i];
     promise.num_values += counts[i];
   }
-  if (promise.point_size == 0) throw FormatError(file, "is no usable PCD: its header names no fields");
   return promise;
 }
 
