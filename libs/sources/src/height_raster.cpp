@@ -14,8 +14,8 @@
 namespace priormap {
 namespace {
 
-constexpr int block_edge = 256;
-constexpr std::size_t max_blocks = 64;  // 32 MB
+constexpr int block_edge = 128;
+constexpr std::size_t max_blocks = 256;  // 32 MB
 
 /// Single cells of a raster by way of the blocks used last.
 class CellCache {

@@ -83,7 +83,14 @@ TEST_F(HeightRasterTest, srtm_tiles_have_their_samples_on_whole_arc_seconds) {
   EXPECT_NEAR(facts.bounds.min_x, 7 - 0.5 / 1200, 1e-9);
   EXPECT_NEAR(facts.bounds.max_y, 44 + 0.5 / 1200, 1e-9);
   const HeightRaster raster = open(file, "EPSG:4326");
-  EXPECT_NEAR(raster.at(7.4167, 43.7667).value(), 600, 250) << "the mountains above Monaco";
+  auto* dataset = GDALDataset::Open(("/vsizip/" + file.string() + "/N43E007.hgt").c_str(), GDAL_OF_RASTER);
+  ASSERT_NE(dataset, nullptr);
+  for (const int col : {1, 500, 777}) {
+    double sample = 0;
+    ASSERT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Read, col, 280, 1, 1, &sample, 1, 1, GDT_Float64, 0, 0, nullptr), CE_None);
+    EXPECT_NEAR(raster.at(7 + col / 1200.0, 44 - 280 / 1200.0).value(), sample, 1e-6);
+  }
+  GDALClose(dataset);
 }
 
 TEST_F(HeightRasterTest, every_way_to_say_no_data_is_understood) {
@@ -190,7 +197,7 @@ TEST_F(HeightRasterTest, undeclared_heights_are_never_taken_for_declared_ones) {
 TEST_F(HeightRasterTest, blocks_of_a_large_raster_agree_with_its_cells) {
   const HeightRaster raster = open(write({.width = 3000, .height = 2100, .value = [](double col, double row) { return col * 0.01 + row; }}));
   HeightRaster copy = raster;
-  for (int k = 0; k < 20000; ++k) {
+  for (int k = 0; k < 1000; ++k) {
     const int col = (k * 7919) % 2999, row = (k * 104729) % 2099;
     ASSERT_NEAR(copy.at(500000 + col + 0.5, 5000000 - row - 0.5).value(), col * 0.01 + row, 2e-4);
   }

@@ -29,7 +29,7 @@ struct PriorOptions {
     visit("bbox", bbox, {"W,S,E,N: keeps the points inside, half-open"});
     visit("bbox-crs", bbox_crs, {"CRS of --bbox"});
     visit("spacing", spacing_m, {"distance between points; default: 0.5, or the raster's own sampling", "m", 0.01, 1000});
-    visit("tile-size", tile_size_m, {"edge of a tile", "m", 1, 100000});
+    visit("tile-size", tile_size_m, {"edge of a tile", "m", 1, 5000});
     visit("attribution", attribution, {"who must be named by users of the data"});
     visit("license", license, {"SPDX identifier of the data's licence"});
     visit("date", date, {"date of the data, YYYY-MM-DD"});

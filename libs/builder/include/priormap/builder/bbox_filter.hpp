@@ -1,0 +1,39 @@
+#pragma once
+#include <optional>
+
+#include <priormap/builder/prior_options.hpp>
+#include <priormap/geodesy/crs.hpp>
+#include <priormap/geodesy/geo_point.hpp>
+#include <priormap/geodesy/tile_grid.hpp>
+#include <priormap/geodesy/transformer.hpp>
+#include <priormap/pointcloud/point_cloud.hpp>
+
+namespace priormap {
+
+/// The smallest rectangle in `target` that holds `bounds` of `source` (both horizontal), with a margin for the curvature of its edges;
+/// nothing where an edge leaves the domain of either CRS.
+std::optional<Bounds2> enclosing_bounds(const Bounds2& bounds, const Transformer& target_from_source);
+
+/// --bbox: half-open in its own CRS, so that neighbouring boxes share no point and lose none.
+/// One object per thread; copies are cheap.
+class BboxFilter {
+ public:
+  /// @throws CrsError when --bbox-crs is unknown or no operation leads to it from the prior's CRS.
+  BboxFilter(const PriorOptions& options, const Crs& prior);
+
+  /// True without --bbox as well.
+  bool contains(double x, double y) const;
+  /// The points of a cloud in the prior's CRS that lie inside.
+  PointCloud keep(const PointCloud& points) const;
+  /// In the prior's CRS: nothing outside of it is kept. Nothing known: no --bbox, or a box beyond the CRS's domain.
+  const std::optional<Bounds2>& outer() const { return outer_; }
+  bool is_active() const { return bbox_.has_value(); }
+
+ private:
+  std::optional<Bounds2> bbox_;
+  std::optional<Transformer> prior_from_bbox_;   ///< none: bbox and prior have the same CRS
+  std::optional<Bounds2> outer_;
+  Bounds2 inner_;                                ///< everything inside of it is kept; empty: not known
+};
+
+}  // namespace priormap

@@ -1,0 +1,33 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <priormap/builder/prior_options.hpp>
+#include <priormap/core/events.hpp>
+#include <priormap/geodesy/crs.hpp>
+#include <priormap/geodesy/geo_point.hpp>
+
+namespace priormap {
+
+/// What the coordinates and heights of one input are, by its own word or the user's.
+struct InputCrs {
+  Crs crs;                        ///< with a vertical part where heights are declared or assumed
+  std::string assumed_vertical;   ///< the vertical CRS taken on the user's word; empty: none
+  std::string file;               ///< for messages
+};
+
+/// `declared` as the file states it, overridden by --source-crs, its undeclared heights completed by --assume-vertical.
+/// @throws CrsError when neither file nor options name a CRS.
+InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>& declared, const std::string& file);
+
+/// The CRS of a prior made from `inputs` with its middle at `middle`: --crs, or the UTM zone (the inputs' own zone where all have the same
+/// one). Without a vertical part named, the inputs' common one is taken; heights that nobody declares stay undeclared, with one warning.
+/// @throws CrsError when the CRS asked for is not projected in metres, or a named vertical CRS is asked from undeclared heights,
+/// or inputs disagree on their heights and none is asked for.
+Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const GeoPoint& middle, const Events& events);
+
+/// The vertical part of a prior's CRS as the manifest names it; nothing where heights are undeclared.
+std::optional<std::string> vertical_name(const Crs& prior);
+
+}  // namespace priormap

@@ -1,0 +1,110 @@
+#include <priormap/builder/prior_crs.hpp>
+
+#include <algorithm>
+
+#include <priormap/core/error.hpp>
+
+namespace priormap {
+namespace {
+
+/// A CRS from an option, with the option's name in the message.
+Crs parse_option(const std::string& option, const std::string& text) {
+  try {
+    return Crs::parse(text);
+  } catch (const CrsError& error) {
+    throw CrsError(option + ": " + error.what());
+  }
+}
+
+void check_projected_in_metres(const Crs& crs) {
+  if (!crs.is_projected())
+    throw CrsError("--crs " + crs.name() + " is not projected; a prior needs a projected CRS in metres, such as a UTM zone (EPSG:25832)");
+  if (crs.horizontal_unit_m() != 1 || crs.vertical_unit_m() != 1)
+    throw CrsError("--crs " + crs.name() + " is not in metres; a prior needs a projected CRS in metres, such as a UTM zone (EPSG:25832)");
+  if (crs.heights_point_down()) throw CrsError("--crs " + crs.name() + " counts depths; a prior needs heights");
+}
+
+bool is_utm_zone(const Crs& crs) { return crs.is_projected() && crs.human_name().find("UTM zone") != std::string::npos; }
+
+/// The UTM zone that all inputs are in already, so that nothing is moved without need.
+std::optional<Crs> common_utm_zone(const std::vector<InputCrs>& inputs) {
+  if (inputs.empty()) return std::nullopt;
+  const Crs first = inputs[0].crs.horizontal();
+  const bool all_same = std::all_of(inputs.begin(), inputs.end(), [&](const InputCrs& input) { return input.crs.horizontal().equivalent_to(first); });
+  if (!all_same || !is_utm_zone(first) || first.horizontal_unit_m() != 1) return std::nullopt;
+  return first;
+}
+
+/// ETRS89 and its national realisations: data in them belong into EPSG:258zz.
+bool is_etrs89(const Crs& crs) {
+  const std::string base = crs.horizontal().geographic_base().human_name();
+  return base.find("ETRS89") != std::string::npos || base.find("ETRF") != std::string::npos || base.find("SWEREF99") != std::string::npos ||
+         base.find("RGF93") != std::string::npos;
+}
+
+Crs default_horizontal(const std::vector<InputCrs>& inputs, const GeoPoint& middle) {
+  if (const auto own = common_utm_zone(inputs)) return *own;
+  const bool etrs89 = !inputs.empty() && std::all_of(inputs.begin(), inputs.end(), [](const InputCrs& input) { return is_etrs89(input.crs); });
+  return Crs::utm_zone(middle.lon_deg, middle.lat_deg, etrs89);
+}
+
+const char* remedy = "; declare them with --source-crs H+V (such as EPSG:27700+5701) or --assume-vertical V (such as EPSG:5773)";
+
+/// The vertical part that heights are declared in by all inputs alike; nothing where none declares any.
+std::optional<Crs> common_vertical(const std::vector<InputCrs>& inputs) {
+  std::optional<Crs> common;
+  for (const InputCrs& input : inputs) {
+    if (!input.crs.has_vertical()) continue;
+    const auto vertical = input.crs.vertical();
+    if (!vertical)
+      throw CrsError(input.file + ": heights are ellipsoidal (" + input.crs.name() + "); name the prior's vertical CRS, such as --crs EPSG:32632+5773");
+    if (common && !common->equivalent_to(*vertical))
+      throw CrsError(input.file + ": heights are in " + vertical->name() + ", others in " + common->name() + "; name the prior's vertical CRS with --crs H+V");
+    common = vertical;
+  }
+  if (!common) return std::nullopt;
+  for (const InputCrs& input : inputs)
+    if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, those of other inputs are in " + common->name() + remedy);
+  return common;
+}
+
+Crs with_heights_in_metres(const Crs& horizontal, const Crs& vertical) {
+  const Crs crs = horizontal.with_vertical(vertical);
+  if (crs.vertical_unit_m() != 1 || crs.heights_point_down())
+    throw CrsError("the inputs' heights (" + vertical.name() + ") are not heights in metres; name the prior's vertical CRS, such as --crs " + horizontal.name() + "+5703");
+  return crs;
+}
+
+}  // namespace
+
+InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>& declared, const std::string& file) {
+  std::optional<Crs> crs = declared;
+  if (!options.source_crs.empty()) crs = parse_option("--source-crs", options.source_crs);
+  if (!crs) throw CrsError(file + ": has no coordinate reference system; name it with --source-crs, such as EPSG:25832+7837");
+  if (crs->is_vertical()) throw CrsError(file + ": " + crs->name() + " has heights only; a horizontal CRS is needed too, such as EPSG:25832+7837");
+  if (options.assume_vertical.empty() || crs->has_vertical()) return {*crs, "", file};
+  const Crs assumed = parse_option("--assume-vertical", options.assume_vertical);
+  if (!assumed.is_vertical()) throw CrsError("--assume-vertical " + options.assume_vertical + " is no vertical CRS, such as EPSG:5773");
+  return {crs->with_vertical(assumed), assumed.name(), file};
+}
+
+Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const GeoPoint& middle, const Events& events) {
+  const Crs asked = options.crs.empty() ? default_horizontal(inputs, middle) : parse_option("--crs", options.crs);
+  check_projected_in_metres(asked);
+  if (asked.has_vertical()) {
+    for (const InputCrs& input : inputs)
+      if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, but the prior is asked for in " + asked.name() + remedy);
+    return asked;
+  }
+  if (const auto vertical = common_vertical(inputs)) return with_heights_in_metres(asked, *vertical);
+  if (!inputs.empty()) events.warn(inputs[0].file + ": heights are undeclared and stay as they are (\"vertical\": null)" + remedy);
+  return asked;
+}
+
+std::optional<std::string> vertical_name(const Crs& prior) {
+  if (!prior.has_vertical()) return std::nullopt;
+  const auto vertical = prior.vertical();
+  return vertical ? vertical->name() : prior.name();
+}
+
+}  // namespace priormap

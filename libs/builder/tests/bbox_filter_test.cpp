@@ -1,0 +1,79 @@
+#include <priormap/builder/bbox_filter.hpp>
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace priormap {
+namespace {
+
+const Crs prior = Crs::parse("EPSG:25832");
+
+PointCloud random_points() {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> within(-3000, 3000);
+  PointCloud points;
+  points.origin = {691000, 5336000, 0};
+  for (int i = 0; i < 20000; ++i) points.xyz.push_back({within(random), within(random), 0});
+  return points;
+}
+
+PriorOptions with_bbox(std::vector<double> bbox, const std::string& crs = "EPSG:4326") {
+  PriorOptions options;
+  options.bbox = std::move(bbox);
+  options.bbox_crs = crs;
+  return options;
+}
+
+TEST(BboxFilter, agrees_with_the_transformation_of_each_point) {
+  const PointCloud points = random_points();
+  const std::vector<double> box = {11.56, 48.13, 11.59, 48.16};
+  const BboxFilter filter(with_bbox(box), prior);
+  const Transformer to_bbox(prior, Crs::parse("EPSG:4326"));
+  std::size_t expected = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d p = to_bbox.forward(points.position(i));
+    expected += p.x() >= box[0] && p.x() < box[2] && p.y() >= box[1] && p.y() < box[3];
+  }
+  EXPECT_GT(expected, 1000u);
+  EXPECT_LT(expected, 19000u);
+  EXPECT_EQ(filter.keep(points).size(), expected);
+}
+
+TEST(BboxFilter, neighbouring_boxes_share_no_point_and_lose_none) {
+  const PointCloud points = random_points();
+  const auto count = [&](double west, double south, double east, double north) {
+    return BboxFilter(with_bbox({west, south, east, north}), prior).keep(points).size();
+  };
+  const std::size_t whole = count(11.55, 48.12, 11.59, 48.16);
+  EXPECT_EQ(count(11.55, 48.12, 11.57, 48.14) + count(11.57, 48.12, 11.59, 48.14) + count(11.55, 48.14, 11.57, 48.16) + count(11.57, 48.14, 11.59, 48.16), whole);
+}
+
+TEST(BboxFilter, in_the_priors_crs_is_half_open) {
+  const BboxFilter filter(with_bbox({691000, 5336000, 691010, 5336010}, "EPSG:25832"), prior);
+  EXPECT_TRUE(filter.contains(691000, 5336000));
+  EXPECT_FALSE(filter.contains(691010, 5336005));
+  EXPECT_FALSE(filter.contains(691005, 5336010));
+}
+
+TEST(BboxFilter, without_a_box_everything_is_kept) {
+  const BboxFilter filter(PriorOptions{}, prior);
+  EXPECT_FALSE(filter.is_active());
+  EXPECT_TRUE(filter.contains(0, 0));
+}
+
+TEST(EnclosingBounds, hold_every_point_of_the_rectangle) {
+  const Transformer to_utm(Crs::parse("EPSG:4326"), prior);
+  const Bounds2 bounds{5, 45, 14, 56};
+  const auto enclosing = enclosing_bounds(bounds, to_utm);
+  ASSERT_TRUE(enclosing);
+  for (double lon = 5; lon <= 14; lon += 0.173) {
+    for (double lat = 45; lat <= 56; lat += 0.191) {
+      const Eigen::Vector3d p = to_utm.forward(Eigen::Vector3d(lon, lat, 0));
+      ASSERT_TRUE(enclosing->contains(p.x(), p.y())) << lon << " " << lat;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace priormap

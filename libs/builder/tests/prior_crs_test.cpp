@@ -1,0 +1,96 @@
+#include <priormap/builder/prior_crs.hpp>
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include <priormap/core/error.hpp>
+
+namespace priormap {
+namespace {
+
+const GeoPoint munich{48.1, 11.5, 0};
+
+struct Resolved {
+  std::optional<Crs> crs;
+  std::vector<std::string> warnings;
+  std::string error;
+};
+
+Resolved resolve(const PriorOptions& options, const std::vector<std::string>& declared, const GeoPoint& middle = munich) {
+  Resolved resolved;
+  Events events;
+  events.warning = [&](const std::string& message) { resolved.warnings.push_back(message); };
+  try {
+    std::vector<InputCrs> inputs;
+    for (const std::string& text : declared)
+      inputs.push_back(resolve_input_crs(options, text.empty() ? std::nullopt : std::optional(Crs::parse(text)), "input.tif"));
+    resolved.crs = resolve_prior_crs(options, inputs, middle, events);
+  } catch (const CrsError& error) {
+    resolved.error = error.what();
+  }
+  return resolved;
+}
+
+PriorOptions with(const std::function<void(PriorOptions&)>& set) {
+  PriorOptions options;
+  set(options);
+  return options;
+}
+
+TEST(PriorCrs, the_default_is_the_utm_zone_of_the_data) {
+  EXPECT_EQ(resolve({}, {"EPSG:4326+5773"}).crs->name(), "EPSG:32632+5773");
+  EXPECT_EQ(resolve({}, {"EPSG:4258+5773"}).crs->name(), "EPSG:25832+5773");
+  EXPECT_EQ(resolve({}, {"EPSG:3006"}, {57.69, 11.96, 0}).crs->name(), "EPSG:25832") << "SWEREF99 is ETRS89";
+}
+
+TEST(PriorCrs, data_in_a_utm_zone_stay_in_it) {
+  EXPECT_EQ(resolve({}, {"EPSG:26918"}, {40.8, -73.9, 0}).crs->name(), "EPSG:26918");
+  EXPECT_EQ(resolve({}, {"EPSG:25832+7837", "EPSG:25832+7837"}).crs->name(), "EPSG:25832+7837");
+  EXPECT_EQ(resolve({}, {"EPSG:25832", "EPSG:25833"}).crs->name(), "EPSG:25832") << "two zones: the zone of the middle";
+}
+
+TEST(PriorCrs, undeclared_heights_stay_undeclared_with_one_warning) {
+  const Resolved resolved = resolve({}, {"EPSG:25832", "EPSG:25832"});
+  EXPECT_FALSE(resolved.crs->has_vertical());
+  EXPECT_FALSE(vertical_name(*resolved.crs));
+  ASSERT_EQ(resolved.warnings.size(), 1u);
+  EXPECT_NE(resolved.warnings[0].find("--assume-vertical"), std::string::npos);
+}
+
+TEST(PriorCrs, a_named_vertical_crs_from_undeclared_heights_is_refused_with_the_remedy) {
+  const Resolved resolved = resolve(with([](auto& o) { o.crs = "EPSG:25832+7837"; }), {"EPSG:25832"});
+  EXPECT_FALSE(resolved.crs);
+  EXPECT_NE(resolved.error.find("input.tif: heights are undeclared"), std::string::npos);
+  EXPECT_NE(resolved.error.find("--source-crs"), std::string::npos);
+}
+
+TEST(PriorCrs, the_users_word_declares_heights) {
+  EXPECT_EQ(resolve(with([](auto& o) { o.crs = "EPSG:25832+7837"; o.assume_vertical = "EPSG:7837"; }), {"EPSG:25832"}).crs->name(), "EPSG:25832+7837");
+  EXPECT_EQ(resolve(with([](auto& o) { o.assume_vertical = "EPSG:7837"; }), {"EPSG:25832"}).crs->name(), "EPSG:25832+7837");
+  EXPECT_EQ(resolve(with([](auto& o) { o.source_crs = "EPSG:25832+7837"; }), {""}).crs->name(), "EPSG:25832+7837");
+}
+
+TEST(PriorCrs, assumed_heights_are_recorded_and_declared_ones_keep_their_own) {
+  const PriorOptions options = with([](auto& o) { o.assume_vertical = "EPSG:5773"; });
+  EXPECT_EQ(resolve_input_crs(options, Crs::parse("EPSG:25832"), "a").assumed_vertical, "EPSG:5773");
+  const InputCrs declared = resolve_input_crs(options, Crs::parse("EPSG:25832+7837"), "a");
+  EXPECT_EQ(declared.assumed_vertical, "");
+  EXPECT_EQ(declared.crs.name(), "EPSG:25832+7837");
+}
+
+TEST(PriorCrs, unusable_systems_are_refused) {
+  const auto error = [&](const std::string& crs, const std::string& declared) { return resolve(with([&](auto& o) { o.crs = crs; }), {declared}).error; };
+  EXPECT_NE(error("EPSG:4326", "EPSG:4326").find("not projected"), std::string::npos);
+  EXPECT_NE(error("EPSG:2263", "EPSG:4326").find("not in metres"), std::string::npos) << "US survey feet";
+  EXPECT_NE(error("nonsense", "EPSG:4326").find("--crs"), std::string::npos);
+  EXPECT_NE(error("", "").find("no coordinate reference system"), std::string::npos);
+  EXPECT_NE(error("", "EPSG:4979").find("ellipsoidal"), std::string::npos);
+  EXPECT_NE(resolve({}, {"EPSG:25832+7837", "EPSG:25832+5773"}).error.find("--crs H+V"), std::string::npos);
+  EXPECT_NE(resolve({}, {"EPSG:25832+7837", "EPSG:25832"}).error.find("undeclared"), std::string::npos);
+  EXPECT_NE(resolve(with([](auto& o) { o.assume_vertical = "EPSG:25832"; }), {"EPSG:25832"}).error.find("no vertical CRS"), std::string::npos);
+  EXPECT_NE(resolve(with([](auto& o) { o.source_crs = "EPSG:5773"; }), {"EPSG:25832"}).error.find("heights only"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace priormap
