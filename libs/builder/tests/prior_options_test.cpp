@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <priormap/core/error.hpp>
 
 namespace priormap {
@@ -12,7 +14,7 @@ TEST(PriorOptions, a_bbox_is_four_numbers_with_extent) {
   EXPECT_NO_THROW(options.validate());
   options.bbox = {7, 43, 8, 44};
   EXPECT_NO_THROW(options.validate());
-  for (const std::vector<double>& bad : {std::vector<double>{7, 43, 8}, {8, 43, 7, 44}, {7, 44, 8, 44}, {7, 43, 8, 1e999}}) {
+  for (const std::vector<double>& bad : {std::vector<double>{7, 43, 8}, {8, 43, 7, 44}, {7, 44, 8, 44}, {7, 43, 8, HUGE_VAL}}) {
     options.bbox = bad;
     EXPECT_THROW(options.validate(), UsageError);
   }
