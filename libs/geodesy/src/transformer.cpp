@@ -217,5 +217,7 @@ const Crs& Transformer::source() const { return impl_->source; }
 const Crs& Transformer::target() const { return impl_->target; }
 const CoordinateOperation& Transformer::operation() const { return impl_->operation; }
 bool Transformer::is_identity() const { return !impl_->pipeline && impl_->heights.factor == 1; }
+bool Transformer::transforms_heights() const { return impl_->heights.by_operation; }
+double Transformer::height_factor() const { return impl_->heights.factor; }
 
 }  // namespace priormap

@@ -56,6 +56,8 @@ class Transformer {
   const Crs& target() const;
   const CoordinateOperation& operation() const;
   bool is_identity() const;
+  bool transforms_heights() const;   ///< by the operation, so that z depends on the place
+  double height_factor() const;      ///< otherwise: z of the target per z of the source; 1 where z is passed through
 
  private:
   struct Impl;
