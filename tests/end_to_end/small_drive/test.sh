@@ -8,7 +8,7 @@ succeeds osm2prior drive/sources/town.osm.pbf --crs "$crs" --terrain drive/sourc
 succeeds dsm2prior drive/sources/dsm.tif --crs "$crs" -o prior-dsm
 succeeds priormerge prior-osm prior-dsm -o prior
 succeeds priorinfo prior --check
-succeeds mapper --scans drive/velodyne --prior prior --initial-pose "$(start_beside_truth drive)" -o out
+succeeds mapper --scans drive/velodyne --prior prior --initial-pose "$(cat drive/truth/initial_pose.txt)" -o out
 succeeds evaltraj --reference drive/truth/trajectory.csv --estimate out/trajectory.csv --json
 [ "$(figure pairs)" -eq 60 ] || die "$(figure pairs) pairs instead of 60"
 below "ATE mean" "$(figure mean_m)" 0.6
