@@ -62,18 +62,5 @@ TEST(BboxFilter, without_a_box_everything_is_kept) {
   EXPECT_TRUE(filter.contains(0, 0));
 }
 
-TEST(EnclosingBounds, hold_every_point_of_the_rectangle) {
-  const Transformer to_utm(Crs::parse("EPSG:4326"), prior);
-  const Bounds2 bounds{5, 45, 14, 56};
-  const auto enclosing = enclosing_bounds(bounds, to_utm);
-  ASSERT_TRUE(enclosing);
-  for (double lon = 5; lon <= 14; lon += 0.173) {
-    for (double lat = 45; lat <= 56; lat += 0.191) {
-      const Eigen::Vector3d p = to_utm.forward(Eigen::Vector3d(lon, lat, 0));
-      ASSERT_TRUE(enclosing->contains(p.x(), p.y())) << lon << " " << lat;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace priormap

@@ -10,10 +10,6 @@
 
 namespace priormap {
 
-/// The smallest rectangle in `target` that holds `bounds` of `source` (both horizontal), with a margin for the curvature of its edges;
-/// nothing where an edge leaves the domain of either CRS.
-std::optional<Bounds2> enclosing_bounds(const Bounds2& bounds, const Transformer& target_from_source);
-
 /// --bbox: half-open in its own CRS, so that neighbouring boxes share no point and lose none.
 /// One object per thread; copies are cheap.
 class BboxFilter {

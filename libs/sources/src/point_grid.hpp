@@ -1,0 +1,25 @@
+#pragma once
+#include <Eigen/Core>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <priormap/pointcloud/point_cloud.hpp>
+
+namespace priormap {
+
+/// A grid of points in the target CRS, row by row, with one more on each side than are asked for: the neighbours of the outermost.
+/// Where there is no height, z is NaN.
+struct PointGrid {
+  std::size_t width = 0, height = 0;   ///< with the neighbours
+  std::vector<double> x, y, z;
+
+  void resize(std::size_t new_width, std::size_t new_height);
+  std::size_t size() const { return width * height; }
+};
+
+/// The inner points with their normals, column by column from the west and the south of a north-up grid: the order in which tiles are
+/// sorted. Positions are rounded to 0.001.
+PointCloud points_of_grid(const PointGrid& grid);
+
+}  // namespace priormap
