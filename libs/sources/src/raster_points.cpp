@@ -8,6 +8,7 @@
 
 #include <priormap/core/error.hpp>
 #include <priormap/geodesy/image_bounds.hpp>
+#include <priormap/geodesy/interpolated_transformer.hpp>
 
 #include "point_grid.hpp"
 #include "raster_file.hpp"
@@ -31,8 +32,8 @@ Eigen::Vector2i choose_block(const RasterFile& raster) {
   return {std::min(width, multiple(natural.x(), 512)), std::min(height, multiple(natural.y(), 512))};
 }
 
-/// Transforms positions with a height in place; the others lose their height only.
-void transform_known(const Transformer& transformer, PointGrid& grid, std::vector<Eigen::Vector3d>& buffer) {
+/// Transforms positions with a height in place; where that fails the height is lost.
+void transform_known(const InterpolatedTransformer& transformer, PointGrid& grid, std::vector<Eigen::Vector3d>& buffer) {
   buffer.clear();
   for (std::size_t i = 0; i < grid.size(); ++i)
     if (!std::isnan(grid.z[i])) buffer.emplace_back(grid.x[i], grid.y[i], grid.z[i]);
@@ -52,14 +53,14 @@ void transform_known(const Transformer& transformer, PointGrid& grid, std::vecto
 class CellSampling {
  public:
   CellSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<Bounds2>& within)
-      : raster_(file), transformer_(source, target), block_(choose_block(raster_)) {
+      : raster_(file), transformer_(Transformer(source, target), raster_.facts().bounds), block_(choose_block(raster_)) {
     const double cell = target.horizontal_unit_m() * cell_length(source);
     cloud_edge_ = static_cast<int>(std::clamp(cloud_extent / cell, 1.0, static_cast<double>(cloud_edge)));
     plan(within ? needed_area(*within) : std::nullopt);
   }
 
   std::size_t num_blocks() const { return blocks_.size(); }
-  const CoordinateOperation& operation() const { return transformer_.operation(); }
+  const CoordinateOperation& operation() const { return transformer_.exact().operation(); }
 
   void read_block(std::size_t block, const std::function<void(PointCloud&)>& visit) {
     const CellWindow inner = blocks_[block];
@@ -69,7 +70,7 @@ class CellSampling {
     for (int row = inner.row; row < inner.row + inner.height; row += cloud_edge_) {
       for (int col = inner.col; col < inner.col + inner.width; col += cloud_edge_) {
         fill_grid({col, row, std::min(cloud_edge_, inner.col + inner.width - col), std::min(cloud_edge_, inner.row + inner.height - row)}, outer);
-        if (!transformer_.is_identity()) transform_known(transformer_, grid_, buffer_);
+        if (!transformer_.exact().is_identity()) transform_known(transformer_, grid_, buffer_);
         PointCloud points = points_of_grid(grid_);
         if (!points.empty()) visit(points);
       }
@@ -85,8 +86,9 @@ class CellSampling {
 
   /// Where cells of `within` lie in the raster's CRS.
   std::optional<Bounds2> needed_area(const Bounds2& within) const {
-    if (transformer_.is_identity()) return within;
-    const auto image = image_bounds(within, Transformer(transformer_.target().horizontal(), transformer_.source().horizontal()));
+    const Transformer& exact = transformer_.exact();
+    if (exact.is_identity()) return within;
+    const auto image = image_bounds(within, Transformer(exact.target().horizontal(), exact.source().horizontal()));
     return image ? std::optional(image->outer) : std::nullopt;
   }
 
@@ -132,7 +134,7 @@ class CellSampling {
   }
 
   RasterFile raster_;
-  Transformer transformer_;
+  InterpolatedTransformer transformer_;
   Eigen::Vector2i block_;
   int cloud_edge_ = cloud_edge;
   std::vector<CellWindow> blocks_;
