@@ -3,8 +3,9 @@
 set -euo pipefail
 cd "$(dirname "$0")"
 bin=$(cd "${1:-../../build/dev/bin}" && pwd)
-for page in *.1.md; do
-  tool=${page%.1.md}
+for folder in ../../tools/*/; do
+  tool=$(basename "$folder")
+  page=$tool.1.md
   [ -x "$bin/$tool" ] || { echo "update.sh: no $tool in $bin; build it first" >&2; exit 1; }
   "$bin/$tool" --help >"$page.help"
   awk -v help="$page.help" '

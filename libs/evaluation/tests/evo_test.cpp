@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <numbers>
+#include <ostream>
 
 #include <priormap/evaluation/evaluate.hpp>
 #include <priormap/evaluation/trajectory_file.hpp>
@@ -24,6 +25,8 @@ struct Stored {
   std::size_t rpe_pairs;
   double rpe_mean, rpe_rmse, rpe_median, rpe_max;
 };
+
+void PrintTo(const Stored& stored, std::ostream* out) { *out << stored.estimate; }
 
 class Evo : public testing::TestWithParam<Stored> {
  protected:
