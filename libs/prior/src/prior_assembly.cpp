@@ -181,7 +181,7 @@ PriorAssembly::TileResult PriorAssembly::write_tile(TileKey key, const TileFilte
   result.entry.num_points = points.size();
   if (points.empty()) return result;
 
-  const PointCloud cloud = cloud_of(points, grid_, key);
+  const PointCloud cloud = cloud_of(points, {grid_.origin(key.x), grid_.origin(key.y)});
   const std::vector<std::byte> bytes =
       encode_las(cloud, {.offset = {cloud.origin.x(), cloud.origin.y(), 0.0}, .wkt = wkt1_});
   OutputFile out(directory_.temporary_path() / tiles_folder_name / (TileGrid::name(key) + ".las"));

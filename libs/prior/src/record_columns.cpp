@@ -30,13 +30,13 @@ PointRecord RecordColumns::record(std::size_t i) const {
   return record;
 }
 
-PointCloud cloud_of(std::span<const PointRecord> records, const LatticeGrid& grid, TileKey key) {
+PointCloud cloud_of(std::span<const PointRecord> records, LatticePoint corner) {
   std::int32_t lowest = records.empty() ? 0 : records[0].z;
   for (const PointRecord& r : records) lowest = std::min(lowest, r.z);
   const std::int32_t z_origin_m = std::int32_t(std::floor(lowest / 1000.0));
 
   PointCloud cloud;
-  cloud.origin = {double(grid.origin(key.x)) / 1000.0, double(grid.origin(key.y)) / 1000.0, double(z_origin_m)};
+  cloud.origin = {double(corner.x) / 1000.0, double(corner.y) / 1000.0, double(z_origin_m)};
   const std::size_t n = records.size();
   cloud.xyz.resize(n);
   cloud.normal.resize(n);

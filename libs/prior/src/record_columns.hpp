@@ -18,7 +18,12 @@ class RecordColumns {
   const PointCloud& points_;
 };
 
-/// A tile's records as a cloud with its origin at the tile's lower-left corner, z origin at a whole metre below the points.
-PointCloud cloud_of(std::span<const PointRecord> records, const LatticeGrid& grid, TileKey key);
+/// A place on the lattice that records count their x and y from.
+struct LatticePoint {
+  std::int64_t x = 0, y = 0;
+};
+
+/// Records as a cloud. Its origin is `corner`, z at a whole metre below the points.
+PointCloud cloud_of(std::span<const PointRecord> records, LatticePoint corner);
 
 }  // namespace priormap
