@@ -9,6 +9,7 @@
 #include <priormap/core/error.hpp>
 #include <priormap/geodesy/transformer.hpp>
 
+#include "raster_area.hpp"
 #include "raster_file.hpp"
 
 namespace priormap {
@@ -89,12 +90,20 @@ struct HeightRaster::Impl {
       : raster(file),
         source(source_crs(raster, override_crs)),
         target(target_crs),
-        horizontal(naming_file(file, [&] { return Transformer(source.horizontal(), target.horizontal()); })),
+        horizontal(naming_file(file, [&] { return Transformer(source.horizontal(), target.horizontal(), area_of(raster.facts(), source)); })),
+        cell_from_world(raster.world_from_cell().inverse()),
         cells(raster) {
-    if (target.has_vertical()) spatial.emplace(naming_file(file, [&] { return Transformer(source, target); }));
+    if (target.has_vertical()) spatial.emplace(naming_file(file, [&] { return Transformer(source, target, area_of(raster.facts(), source)); }));
     if (spatial && spatial->is_identity()) spatial.reset();
-    cell_from_world = raster.world_from_cell().inverse();
   }
+  Impl(const Impl& other)
+      : raster(other.raster),
+        source(other.source),
+        target(other.target),
+        horizontal(other.horizontal),
+        spatial(other.spatial),
+        cell_from_world(other.cell_from_world),
+        cells(raster) {}
 
   Eigen::Vector2d cell_at(double x, double y) const {
     const Eigen::Vector3d p = horizontal.is_identity() ? Eigen::Vector3d(x, y, 0) : horizontal.inverse(Eigen::Vector3d(x, y, 0));
@@ -125,7 +134,7 @@ HeightRaster HeightRaster::open(const std::filesystem::path& file, const std::op
 
 HeightRaster::HeightRaster(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 HeightRaster::HeightRaster(const HeightRaster& other)
-    : impl_(std::make_unique<Impl>(other.impl_->raster.path(), other.impl_->source, other.impl_->target)) {}
+    : impl_(std::make_unique<Impl>(*other.impl_)) {}
 HeightRaster& HeightRaster::operator=(const HeightRaster& other) { return *this = HeightRaster(other); }
 HeightRaster::HeightRaster(HeightRaster&&) noexcept = default;
 HeightRaster& HeightRaster::operator=(HeightRaster&&) noexcept = default;
@@ -186,14 +195,6 @@ void HeightRaster::for_each_inside(const Bounds2& bounds, const std::function<vo
 
 const Crs& HeightRaster::source() const { return impl_->source; }
 
-double HeightRaster::cell_size() const {
-  const RasterFacts& facts = impl_->raster.facts();
-  const auto corner = [&](double col, double row) {
-    return Eigen::Vector2d(impl_->to_target(impl_->raster.world_from_cell() * Eigen::Vector2d(col, row), 0).head<2>());
-  };
-  const double col = 0.5 * facts.width, row = 0.5 * facts.height;
-  const Eigen::Vector2d along = corner(col + 1, row) - corner(col, row), down = corner(col, row + 1) - corner(col, row);
-  return std::sqrt(std::abs(along.x() * down.y() - along.y() * down.x()));
-}
+double HeightRaster::cell_size() const { return target_cell_size(impl_->raster, impl_->horizontal); }
 
 }  // namespace priormap

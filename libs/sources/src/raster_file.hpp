@@ -18,12 +18,13 @@ struct CellWindow {
   int col = 0, row = 0, width = 0, height = 0;
 };
 
-/// Band 1 of a GDAL raster as heights. Not for several threads at once.
+/// Band 1 of a GDAL raster as heights. One object per thread; copies open the file once more.
 class RasterFile {
  public:
   /// @throws IoError, FormatError
   explicit RasterFile(const std::filesystem::path& file);
   ~RasterFile();
+  RasterFile(const RasterFile& other) : RasterFile(other.file_) {}
   RasterFile(RasterFile&&) noexcept;
 
   const std::filesystem::path& path() const { return file_; }

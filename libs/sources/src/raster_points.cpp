@@ -11,6 +11,7 @@
 #include <priormap/geodesy/interpolated_transformer.hpp>
 
 #include "point_grid.hpp"
+#include "raster_area.hpp"
 #include "raster_file.hpp"
 
 namespace priormap {
@@ -53,14 +54,16 @@ void transform_known(const InterpolatedTransformer& transformer, PointGrid& grid
 class CellSampling {
  public:
   CellSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<Bounds2>& within)
-      : raster_(file), transformer_(Transformer(source, target), raster_.facts().bounds), block_(choose_block(raster_)) {
-    const double cell = target.horizontal_unit_m() * cell_length(source);
-    cloud_edge_ = static_cast<int>(std::clamp(cloud_extent / cell, 1.0, static_cast<double>(cloud_edge)));
+      : raster_(file), transformer_(Transformer(source, target, area_of(raster_.facts(), source)), raster_.facts().bounds), block_(choose_block(raster_)) {
+    cell_size_ = target_cell_size(raster_, transformer_.exact());
+    const double longer = cell_size_ * std::sqrt(std::max(raster_.facts().cell_x / raster_.facts().cell_y, raster_.facts().cell_y / raster_.facts().cell_x));
+    cloud_edge_ = static_cast<int>(std::clamp(cloud_extent / longer, 1.0, static_cast<double>(cloud_edge)));
     plan(within ? needed_area(*within) : std::nullopt);
   }
 
   std::size_t num_blocks() const { return blocks_.size(); }
   const CoordinateOperation& operation() const { return transformer_.exact().operation(); }
+  double cell_size() const { return cell_size_; }
 
   void read_block(std::size_t block, const std::function<void(PointCloud&)>& visit) {
     const CellWindow inner = blocks_[block];
@@ -78,12 +81,6 @@ class CellSampling {
   }
 
  private:
-  /// Longer edge of a cell in metres.
-  double cell_length(const Crs& source) const {
-    constexpr double metres_per_degree = 111320;
-    return std::max(raster_.facts().cell_x, raster_.facts().cell_y) * (source.is_geographic() ? metres_per_degree : source.horizontal_unit_m());
-  }
-
   /// Where cells of `within` lie in the raster's CRS.
   std::optional<Bounds2> needed_area(const Bounds2& within) const {
     const Transformer& exact = transformer_.exact();
@@ -136,6 +133,7 @@ class CellSampling {
   RasterFile raster_;
   InterpolatedTransformer transformer_;
   Eigen::Vector2i block_;
+  double cell_size_ = 0;
   int cloud_edge_ = cloud_edge;
   std::vector<CellWindow> blocks_;
   std::vector<double> heights_;
@@ -147,7 +145,7 @@ class CellSampling {
 class LatticeSampling {
  public:
   LatticeSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, double spacing, const std::optional<Bounds2>& within)
-      : raster_(HeightRaster::open(file, source, target)), transformer_(source, target), spacing_(spacing) {
+      : raster_(HeightRaster::open(file, source, target)), transformer_(source, target, area_of(read_raster_facts(file), source)), spacing_(spacing) {
     block_nodes_ = static_cast<std::int64_t>(std::clamp(cloud_extent / spacing, 1.0, static_cast<double>(cloud_edge)));
     const Transformer horizontal(source.horizontal(), target.horizontal());
     const auto image = image_bounds(read_raster_facts(file).bounds, horizontal);
@@ -162,6 +160,7 @@ class LatticeSampling {
 
   std::size_t num_blocks() const { return blocks_.size(); }
   const CoordinateOperation& operation() const { return transformer_.operation(); }
+  double cell_size() const { return raster_.cell_size(); }
 
   void read_block(std::size_t block, const std::function<void(PointCloud&)>& visit) {
     const auto [first_i, first_j] = blocks_[block];
@@ -214,18 +213,12 @@ Sampling make_sampling(const std::filesystem::path& file, const Crs& source, con
 }  // namespace
 
 struct RasterPoints::Impl {
-  Impl(const std::filesystem::path& file_path, const Crs& source_crs, const Crs& target_crs, const RasterPointsOptions& sampling_options)
-      : file(file_path), source(source_crs), target(target_crs), options(sampling_options), sampling(make_sampling(file, source, target, options)) {}
-  std::filesystem::path file;
-  Crs source, target;
-  RasterPointsOptions options;
   Sampling sampling;
 };
 
 RasterPoints::RasterPoints(const std::filesystem::path& file, const Crs& source, const Crs& target, const RasterPointsOptions& options)
-    : impl_(std::make_unique<Impl>(file, source, target, options)) {}
-RasterPoints::RasterPoints(const RasterPoints& other)
-    : impl_(std::make_unique<Impl>(other.impl_->file, other.impl_->source, other.impl_->target, other.impl_->options)) {}
+    : impl_(new Impl{make_sampling(file, source, target, options)}) {}
+RasterPoints::RasterPoints(const RasterPoints& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
 RasterPoints& RasterPoints::operator=(const RasterPoints& other) { return *this = RasterPoints(other); }
 RasterPoints::RasterPoints(RasterPoints&&) noexcept = default;
 RasterPoints& RasterPoints::operator=(RasterPoints&&) noexcept = default;
@@ -237,6 +230,10 @@ std::size_t RasterPoints::num_blocks() const {
 
 void RasterPoints::read_block(std::size_t block, const std::function<void(PointCloud&)>& visit) {
   std::visit([&](auto& sampling) { sampling.read_block(block, visit); }, impl_->sampling);
+}
+
+double RasterPoints::cell_size() const {
+  return std::visit([](const auto& sampling) { return sampling.cell_size(); }, impl_->sampling);
 }
 
 const CoordinateOperation& RasterPoints::operation() const {

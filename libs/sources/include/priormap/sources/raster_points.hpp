@@ -40,6 +40,7 @@ class RasterPoints {
   /// Calls visit(points) with the block's points: positions and normals, each cloud within a few km of its origin.
   void read_block(std::size_t block, const std::function<void(PointCloud& points)>& visit);
   const CoordinateOperation& operation() const;
+  double cell_size() const;   ///< edge of a raster cell (geometric mean) in the unit of the target CRS, at the raster's centre
 
  private:
   struct Impl;

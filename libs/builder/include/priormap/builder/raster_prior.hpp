@@ -1,0 +1,42 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <priormap/builder/prior_options.hpp>
+#include <priormap/core/atomic_output.hpp>
+#include <priormap/core/events.hpp>
+#include <priormap/prior/prior_manifest.hpp>
+
+namespace priormap {
+
+struct RasterPriorOptions {
+  /// "terrain": bare ground, points are class ground. "surface": ground, roofs and trees that a raster alone cannot tell apart: unclassified.
+  std::string kind = "surface";
+  std::optional<double> sigma_m;
+
+  template <class Visitor>
+  void describe(Visitor& visit) {
+    visit("sigma", sigma_m, {"standard deviation of a point; default: sqrt(0.15^2 + cell^2 / 12)", "m", 0.001, 65});
+  }
+  /// @throws UsageError for another kind
+  void validate() const;
+};
+
+struct RasterReport {
+  PriorManifest manifest;   ///< as written
+  std::size_t rasters = 0;  ///< without files given twice
+};
+
+/// From rasters to a prior: reads block by block, brings cells into the prior's CRS, cuts by --bbox and writes tiles.
+/// Where rasters overlap the finer one has the word (of equal cells the one whose content hash is lower): a point is left out where a preferred
+/// raster has a height. The result does not depend on the order of the files or the number of threads.
+/// @throws UsageError, CrsError, IoError, FormatError (no raster, no height, none inside --bbox)
+RasterReport build_raster_prior(const std::vector<std::filesystem::path>& inputs, const PriorOptions& prior_options, const RasterPriorOptions& raster_options,
+                                const std::filesystem::path& output, Overwrite overwrite, const std::string& generator, int threads, const Events& events);
+
+/// The report as a program prints it.
+std::string to_text(const RasterReport& report);
+
+}  // namespace priormap

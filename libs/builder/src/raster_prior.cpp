@@ -1,0 +1,294 @@
+#include <priormap/builder/raster_prior.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <iomanip>
+#include <memory>
+#include <mutex>
+#include <sstream>
+#include <tuple>
+
+#include <priormap/builder/bbox_filter.hpp>
+#include <priormap/builder/prior_crs.hpp>
+#include <priormap/core/error.hpp>
+#include <priormap/core/hash.hpp>
+#include <priormap/core/parallel.hpp>
+#include <priormap/geodesy/image_bounds.hpp>
+#include <priormap/prior/prior_writer.hpp>
+#include <priormap/sources/height_raster.hpp>
+#include <priormap/sources/raster_points.hpp>
+
+namespace priormap {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Height noise of airborne surface and terrain models where the user says nothing better.
+constexpr double default_height_sigma_m = 0.15;
+/// Operations less accurate than this are worth a warning.
+constexpr double accuracy_warning_m = 0.5;
+
+/// One raster, by content.
+struct RasterInput {
+  fs::path file;
+  std::string sha256;
+  RasterFacts facts;
+  InputCrs crs;
+};
+
+/// Of the file's bytes; of its name where it is no plain file (a /vsi... path, a database).
+std::string content_hash(const fs::path& file) {
+  if (fs::is_regular_file(file)) return sha256_file(file);
+  Sha256 hash;
+  hash.update(file.string());
+  return hash.hex_digest();
+}
+
+bool overlap(const Bounds2& a, const Bounds2& b) { return a.min_x < b.max_x && b.min_x < a.max_x && a.min_y < b.max_y && b.min_y < a.max_y; }
+
+/// Each content once, the preferred first: finer cells, then the lower hash.
+std::vector<RasterInput> read_inputs(const std::vector<fs::path>& files, const PriorOptions& options, int threads) {
+  std::vector<RasterInput> inputs;
+  for (const fs::path& file : files) {
+    RasterFacts facts = read_raster_facts(file);
+    InputCrs crs = resolve_input_crs(options, facts.crs, file.string());
+    inputs.push_back({file, "", std::move(facts), std::move(crs)});
+  }
+  parallel_for(inputs.size(), threads, [&](std::size_t i) { inputs[i].sha256 = content_hash(inputs[i].file); });
+  const auto cell_m = [](const RasterInput& input) {
+    constexpr double metres_per_degree = 111320;
+    return std::sqrt(input.facts.cell_x * input.facts.cell_y) * (input.crs.crs.is_geographic() ? metres_per_degree : input.crs.crs.horizontal_unit_m());
+  };
+  std::sort(inputs.begin(), inputs.end(), [&](const RasterInput& a, const RasterInput& b) {
+    return std::make_tuple(cell_m(a), a.sha256, a.file) < std::make_tuple(cell_m(b), b.sha256, b.file);
+  });
+  const auto same_content = [](const RasterInput& a, const RasterInput& b) { return a.sha256 == b.sha256; };
+  inputs.erase(std::unique(inputs.begin(), inputs.end(), same_content), inputs.end());
+  return inputs;
+}
+
+/// The middle of all rasters in degrees, or of --bbox where they reach over more than one UTM zone.
+GeoPoint middle_of(const std::vector<RasterInput>& inputs, const PriorOptions& options) {
+  constexpr double zone_width_deg = 6;
+  const Crs lon_lat = Crs::parse("EPSG:4326");
+  Bounds2 all{180, 90, -180, -90};
+  for (const RasterInput& input : inputs) {
+    const auto image = image_bounds(input.facts.bounds, Transformer(input.crs.crs.horizontal(), lon_lat));
+    const Bounds2 bounds = image ? image->outer : Bounds2{-180, -90, 180, 90};
+    all = {std::min(all.min_x, bounds.min_x), std::min(all.min_y, bounds.min_y), std::max(all.max_x, bounds.max_x), std::max(all.max_y, bounds.max_y)};
+  }
+  if (all.max_x - all.min_x > zone_width_deg && !options.bbox.empty()) {
+    const Transformer to_lon_lat(Crs::parse(options.bbox_crs).horizontal(), lon_lat);
+    const Eigen::Vector3d p = to_lon_lat.forward({0.5 * (options.bbox[0] + options.bbox[2]), 0.5 * (options.bbox[1] + options.bbox[3]), 0});
+    return {p.y(), p.x(), 0};
+  }
+  return {0.5 * (all.min_y + all.max_y), 0.5 * (all.min_x + all.max_x), 0};
+}
+
+Crs prior_crs(const std::vector<RasterInput>& inputs, const PriorOptions& options, const Events& events) {
+  std::vector<InputCrs> crs;
+  for (const RasterInput& input : inputs) crs.push_back(input.crs);
+  return resolve_prior_crs(options, crs, middle_of(inputs, options), events);
+}
+
+void warn_of_inaccuracy(const RasterInput& input, const CoordinateOperation& operation, const Events& events) {
+  if (!operation.accuracy_m || *operation.accuracy_m <= accuracy_warning_m) return;
+  std::ostringstream text;
+  text << input.file.string() << ": the operation to the prior's CRS (" << operation.name << ") is accurate to " << *operation.accuracy_m << " m only; --crs "
+       << input.crs.crs.horizontal().name() << " avoids it";
+  if (!operation.better_grids.empty()) text << ", the grid " << operation.better_grids[0] << " would allow a better one";
+  events.warn(text.str());
+}
+
+double sigma_of(const RasterPriorOptions& options, double cell_m) { return options.sigma_m.value_or(std::hypot(default_height_sigma_m, cell_m / std::sqrt(12.0))); }
+
+PriorSource source_of(const RasterInput& input, const RasterPoints& points, const PriorOptions& prior_options, const RasterPriorOptions& raster_options) {
+  PriorSource source;
+  source.id = "raster-" + input.sha256.substr(0, 8);
+  source.kind = "raster";
+  source.file_name = input.file.filename().string();
+  source.sha256 = input.sha256;
+  source.license = prior_options.license;
+  source.attribution = prior_options.attribution;
+  source.date = prior_options.date;
+  source.crs = input.crs.crs.name();
+  source.assumed_vertical = input.crs.assumed_vertical;
+  source.operation = points.operation();
+  source.sigma_m = sigma_of(raster_options, points.cell_size());
+  return source;
+}
+
+/// What one thread needs to turn blocks of a raster into points of the prior.
+class BlockWorker {
+ public:
+  BlockWorker(const RasterPoints& points, const BboxFilter& bbox, const std::vector<HeightRaster>& preferred) : points_(points), bbox_(bbox), preferred_(preferred) {}
+
+  /// Calls visit(points) with those that belong to the prior.
+  void read(std::size_t block, const std::function<void(PointCloud&)>& visit) {
+    points_.read_block(block, [&](PointCloud& cloud) {
+      if (!bbox_.is_active() && preferred_.empty()) return visit(cloud);
+      PointCloud kept = kept_of(cloud);
+      if (!kept.empty()) visit(kept);
+    });
+  }
+
+ private:
+  PointCloud kept_of(const PointCloud& cloud) const {
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      const Eigen::Vector3d p = cloud.position(i);
+      const auto covers = [&](const HeightRaster& raster) { return raster.at(p.x(), p.y()).has_value(); };
+      if (bbox_.contains(p.x(), p.y()) && std::none_of(preferred_.begin(), preferred_.end(), covers)) kept.push_back(static_cast<std::uint32_t>(i));
+    }
+    return cloud.select(kept);
+  }
+
+  RasterPoints points_;
+  BboxFilter bbox_;
+  std::vector<HeightRaster> preferred_;
+};
+
+/// Lends one worker to each thread that asks.
+class WorkerPool {
+ public:
+  explicit WorkerPool(const BlockWorker& first) : prototype_(first) {}
+
+  template <class Use>
+  void with_worker(Use&& use) {
+    std::unique_ptr<BlockWorker> worker = take();
+    use(*worker);
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(worker));
+  }
+
+ private:
+  std::unique_ptr<BlockWorker> take() {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return std::make_unique<BlockWorker>(prototype_);
+    auto worker = std::move(idle_.back());
+    idle_.pop_back();
+    return worker;
+  }
+
+  std::mutex mutex_;
+  const BlockWorker& prototype_;
+  std::vector<std::unique_ptr<BlockWorker>> idle_;
+};
+
+/// Everything that the points of one raster have in common.
+struct PointColumns {
+  PointClass point_class;
+  float sigma_m;
+  std::uint16_t source;
+
+  void fill(PointCloud& points) const {
+    points.classification.assign(points.size(), static_cast<std::uint8_t>(point_class));
+    points.sigma_m.assign(points.size(), sigma_m);
+    points.source.assign(points.size(), source);
+  }
+};
+
+/// Preferred rasters that may have heights where `raster` has.
+std::vector<HeightRaster> preferred_of(const std::vector<RasterInput>& inputs, std::size_t raster, const Crs& prior) {
+  std::vector<HeightRaster> preferred;
+  const auto bounds_in_prior = [&](const RasterInput& input) { return image_bounds(input.facts.bounds, Transformer(input.crs.crs.horizontal(), prior.horizontal())); };
+  if (raster == 0) return preferred;
+  const auto own = bounds_in_prior(inputs[raster]);
+  for (std::size_t i = 0; i < raster; ++i) {
+    const auto other = bounds_in_prior(inputs[i]);
+    if (!own || !other || overlap(own->outer, other->outer)) preferred.push_back(HeightRaster::open(inputs[i].file, inputs[i].crs.crs, prior));
+  }
+  return preferred;
+}
+
+std::uint64_t write_raster(const BlockWorker& prototype, std::size_t num_blocks, const PointColumns& columns, PriorWriter& writer, int threads,
+                           const std::function<void(double)>& advance) {
+  WorkerPool pool(prototype);
+  std::atomic<std::uint64_t> num_points = 0;
+  std::atomic<std::size_t> done = 0;
+  parallel_for(num_blocks, threads, [&](std::size_t block) {
+    pool.with_worker([&](BlockWorker& worker) {
+      worker.read(block, [&](PointCloud& points) {
+        columns.fill(points);
+        writer.add(points);
+        num_points += points.size();
+      });
+    });
+    advance(static_cast<double>(++done) / static_cast<double>(num_blocks));
+  });
+  return num_points;
+}
+
+PriorManifest manifest_of(const Crs& prior, const PriorOptions& options, const std::vector<PriorSource>& sources, double finest_cell, const std::string& generator) {
+  PriorManifest manifest;
+  manifest.crs = prior.name();
+  manifest.vertical = vertical_name(prior);
+  manifest.tile_size = options.tile_size_m;
+  manifest.spacing_m = options.spacing_or(finest_cell);
+  manifest.sources = sources;
+  manifest.generator = generator;
+  return manifest;
+}
+
+[[noreturn]] void refuse_empty(const std::vector<RasterInput>& inputs, const PriorOptions& options) {
+  if (options.bbox.empty()) throw FormatError(inputs[0].file, "holds no height: every cell is without data");
+  std::ostringstream text;
+  text << "no height lies inside --bbox (W,S,E,N in " << options.bbox_crs << "); the data reach from " << std::setprecision(10);
+  const Bounds2& b = inputs[0].facts.bounds;
+  text << b.min_x << "," << b.min_y << " to " << b.max_x << "," << b.max_y << " in " << inputs[0].crs.crs.name();
+  throw FormatError(inputs[0].file, text.str());
+}
+
+}  // namespace
+
+void RasterPriorOptions::validate() const {
+  if (kind != "surface" && kind != "terrain") throw UsageError("--kind is surface or terrain, not '" + kind + "'");
+}
+
+RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorOptions& prior_options, const RasterPriorOptions& raster_options, const fs::path& output,
+                                Overwrite overwrite, const std::string& generator, int threads, const Events& events) {
+  prior_options.validate();
+  raster_options.validate();
+  const std::vector<RasterInput> inputs = read_inputs(files, prior_options, threads);
+  const Crs prior = prior_crs(inputs, prior_options, events);
+  const BboxFilter bbox(prior_options, prior);
+  const RasterPointsOptions sampling{prior_options.spacing_m, bbox.outer()};
+
+  std::vector<PriorSource> sources;
+  double finest_cell = 0;
+  for (const RasterInput& input : inputs) {
+    const RasterPoints points(input.file, input.crs.crs, prior, sampling);
+    warn_of_inaccuracy(input, points.operation(), events);
+    if (sources.empty()) finest_cell = points.cell_size();
+    sources.push_back(source_of(input, points, prior_options, raster_options));
+  }
+  PriorWriter writer(output, manifest_of(prior, prior_options, sources, finest_cell, generator), overwrite);
+
+  std::uint64_t num_points = 0;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const RasterPoints points(inputs[i].file, inputs[i].crs.crs, prior, sampling);
+    const PointColumns columns{raster_options.kind == "terrain" ? PointClass::ground : PointClass::unclassified, static_cast<float>(*sources[i].sigma_m),
+                               static_cast<std::uint16_t>(i)};
+    const auto advance = [&](double fraction) { events.advance("reading rasters", (static_cast<double>(i) + fraction) / static_cast<double>(inputs.size())); };
+    const std::uint64_t written = write_raster(BlockWorker(points, bbox, preferred_of(inputs, i, prior)), points.num_blocks(), columns, writer, threads, advance);
+    sources[i].facts = {{"kind", raster_options.kind}, {"cells", std::to_string(inputs[i].facts.width) + " x " + std::to_string(inputs[i].facts.height)}, {"points", std::to_string(written)}};
+    num_points += written;
+  }
+  if (num_points == 0) refuse_empty(inputs, prior_options);
+  writer.set_sources(sources);
+  return {writer.finish(threads, events), inputs.size()};
+}
+
+std::string to_text(const RasterReport& report) {
+  std::ostringstream text;
+  const auto line = [&](const std::string& name, const auto& value) { text << std::left << std::setw(28) << name << value << '\n'; };
+  line("rasters", report.rasters);
+  line("points", report.manifest.num_points);
+  line("tiles", report.manifest.num_tiles);
+  line("crs", report.manifest.crs);
+  line("vertical", report.manifest.vertical.value_or("null"));
+  return text.str();
+}
+
+}  // namespace priormap
