@@ -16,6 +16,7 @@
 #include <priormap/simulation/random.hpp>
 
 #include "drive_plan.hpp"
+#include "osm_town.hpp"
 #include "polyline.hpp"
 #include "stream.hpp"
 
@@ -171,6 +172,19 @@ void write_scans(const fs::path& directory, const Lidar& lidar, const DrivePath&
   summary.simulate_ms_per_scan = elapsed.count() / static_cast<double>(path.size());
 }
 
+bool source_says_height(const Building& building, const BuildingError& error) {
+  if (building.source) return building.source->height_m || building.source->levels;
+  return error.has_height_tag || error.has_levels_tag;
+}
+
+Town build_town(const DrivePlan& plan, const DriveOptions& options) {
+  if (!plan.buildings) return generate_town(plan.town, options.town_options, options.seed);
+  Town town{lay_ground(plan.town, options.seed), plan.town.streets, *plan.buildings, {}, {}, {}, {}};
+  raise_buildings(town.buildings, town.terrain, options.errors, options.town_options.unsurveyed_share, options.seed);
+  furnish(town, plan.town, options.town_options, options.seed);
+  return town;
+}
+
 }  // namespace
 
 DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output, Overwrite overwrite, int threads, const Events& events) {
@@ -179,8 +193,8 @@ DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output,
   for (const char* folder : {"velodyne", "truth", "sources"}) fs::create_directory(root / folder);
   if (options.noise.motion_distortion) fs::create_directory(root / "point_times");
 
-  const DrivePlan plan = plan_drive(options);
-  const Town town = generate_town(plan.town, options.town_options, options.seed);
+  const DrivePlan plan = plan_drive(options, threads);
+  const Town town = build_town(plan, options);
   const std::vector<BuildingError> errors = draw_errors(town, plan.town.driven, options.errors, options.seed);
   const DrivePath path = ride(plan.track, town.terrain, options.platform, options.seed);
   events.inform(format("%zu buildings, %zu trees, %zu parked cars along %.0f m of drive", town.buildings.size(), town.trees.size(),
@@ -203,7 +217,7 @@ DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output,
   summary.num_buildings = town.buildings.size();
   for (std::size_t i = 0; i < errors.size(); ++i) {
     summary.num_missing += errors[i].missing;
-    summary.num_default_height += !errors[i].missing && town.buildings[i].tags.empty() && !errors[i].has_height_tag && !errors[i].has_levels_tag;
+    summary.num_default_height += !errors[i].missing && !source_says_height(town.buildings[i], errors[i]);
   }
   LidarModel model = lidar_model(options.sensor);
   model.rate_hz = scan_rate_hz(options);

@@ -7,7 +7,10 @@
 #include <priormap/core/error.hpp>
 #include <priormap/geodesy/transformer.hpp>
 #include <priormap/simulation/street_graph.hpp>
+#include <priormap/sources/height_raster.hpp>
 
+#include "mesh_parts.hpp"
+#include "osm_town.hpp"
 #include "polyline.hpp"
 
 namespace priormap {
@@ -20,17 +23,42 @@ constexpr double town_margin_m = 90;   // beyond streets and track: nearly as fa
 Crs projected_crs(const RouteOptions& route) {
   Crs crs = Crs::parse(route.crs);
   if (!crs.is_projected()) throw CrsError("--crs " + route.crs + " is not projected; name one such as EPSG:25832+7837");
+  if (crs.horizontal_unit_m() != 1 || crs.vertical_unit_m() != 1)
+    throw CrsError("--crs " + route.crs + " does not count in metres; name one that does, such as EPSG:25832+7837");
   return crs;
+}
+
+MapFrame frame_at(const RouteOptions& route, const Eigen::Vector2d& lon_lat) {
+  const Crs crs = projected_crs(route);
+  const Transformer from_lon_lat(Crs::parse("EPSG:4326"), crs.horizontal());
+  Eigen::Vector3d origin = from_lon_lat.forward(Eigen::Vector3d(lon_lat.x(), lon_lat.y(), 0));
+  if (!origin.allFinite()) throw CrsError("the drive's place lies outside of " + route.crs + "; name its zone with --crs");
+  origin.z() = route.origin_height_m;
+  return MapFrame::at(crs, origin);
 }
 
 MapFrame frame_at_origin(const RouteOptions& route) {
   if (route.origin_lon_lat.size() != 2) throw UsageError("--origin takes LON,LAT");
-  const Crs crs = projected_crs(route);
-  const Transformer from_lon_lat(Crs::parse("EPSG:4326"), crs.horizontal());
-  Eigen::Vector3d origin = from_lon_lat.forward(Eigen::Vector3d(route.origin_lon_lat[0], route.origin_lon_lat[1], 0));
-  if (!origin.allFinite()) throw CrsError("--origin lies outside of " + route.crs);
-  origin.z() = route.origin_height_m;
-  return MapFrame::at(crs, origin);
+  return frame_at(route, {route.origin_lon_lat[0], route.origin_lon_lat[1]});
+}
+
+/// Ground heights of a terrain model under the town, on a raster of 4 m.
+std::vector<Eigen::Vector3d> ground_points(const std::string& terrain, const MapFrame& frame, const Bounds2& bounds) {
+  constexpr double spacing_m = 4;
+  const HeightRaster raster = HeightRaster::open(terrain, std::nullopt, frame.projected());
+  std::vector<Eigen::Vector3d> points;
+  for (double y = bounds.min_y; y < bounds.max_y; y += spacing_m)
+    for (double x = bounds.min_x; x < bounds.max_x; x += spacing_m) {
+      const Eigen::Vector3d projected = frame.to_projected(Eigen::Vector3d(x, y, 0));
+      if (const auto height_m = raster.at(projected.x(), projected.y())) points.emplace_back(x, y, *height_m);
+    }
+  if (points.empty()) throw FormatError(terrain, "covers no part of the drive's town");
+  return points;
+}
+
+Relief relief_of(const DriveOptions& options, const MapFrame& frame, const Bounds2& bounds) {
+  if (options.route.terrain) return relief_through(ground_points(*options.route.terrain, frame, bounds), bounds);
+  return rolling_relief(options.route.origin_height_m, options.town_options.relief_m, options.seed);
 }
 
 Bounds2 bounds_around(const TownPlan& plan) {
@@ -53,7 +81,7 @@ std::vector<Eigen::Vector2d> line_of(const std::vector<TrackPoint>& track) {
 }
 
 /// The recorded poses as the drive uses them: first pose at the origin of `map`, turned to its direction there.
-std::vector<Eigen::Isometry3d> recorded_in_map(const DriveOptions& options, const RecordedPoses& recorded, const MapFrame& frame) {
+std::vector<Eigen::Isometry3d> recorded_in_map(const DriveOptions& options, const RecordedPoses& recorded) {
   const auto first = static_cast<std::size_t>(options.route.first_scan);
   if (first >= recorded.poses.size()) throw UsageError("--first " + std::to_string(first) + " lies beyond the trajectory's end");
   const std::size_t left = recorded.poses.size() - first;
@@ -61,7 +89,7 @@ std::vector<Eigen::Isometry3d> recorded_in_map(const DriveOptions& options, cons
   const Eigen::Vector3d start = recorded.poses[first].translation();
   const Eigen::Vector3d forward = recorded.poses[first].linear().col(0);
   // True north and map north agree at the frame's origin, where the first pose is.
-  const double turn = options.route.start_yaw_deg * degree - std::atan2(forward.y(), forward.x()) + frame.convergence(Eigen::Vector3d::Zero());
+  const double turn = options.route.start_yaw_deg * degree - std::atan2(forward.y(), forward.x());
   const Eigen::AngleAxisd R_map_recorded(turn, Eigen::Vector3d::UnitZ());
   std::vector<Eigen::Isometry3d> poses;
   for (std::size_t i = first; i < first + count; ++i) {
@@ -75,9 +103,8 @@ std::vector<Eigen::Isometry3d> recorded_in_map(const DriveOptions& options, cons
 
 DrivePlan plan_recorded(const DriveOptions& options) {
   const RecordedPoses recorded = read_recorded_poses(*options.trajectory, options.route.trajectory_axes);
-  MapFrame frame = frame_at_origin(options.route);
-  const std::vector<Eigen::Isometry3d> poses = recorded_in_map(options, recorded, frame);
-  DrivePlan plan{std::move(frame), {}, {}, {}};
+  const std::vector<Eigen::Isometry3d> poses = recorded_in_map(options, recorded);
+  DrivePlan plan{frame_at_origin(options.route), {}, {}, {}};
   std::vector<Eigen::Vector3d> positions;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Vector3d forward = poses[i].linear().col(0);
@@ -89,7 +116,7 @@ DrivePlan plan_recorded(const DriveOptions& options) {
   plan.town.driven = line_of(plan.track);
   plan.town.streets = streets_of_track(plan.town.driven);
   plan.town.bounds = bounds_around(plan.town);
-  plan.town.relief = relief_through(positions, plan.town.bounds);
+  plan.town.relief = options.route.terrain ? relief_of(options, plan.frame, plan.town.bounds) : relief_through(positions, plan.town.bounds);
   return plan;
 }
 
@@ -116,7 +143,32 @@ DrivePlan plan_generated(const DriveOptions& options) {
   plan.town.driven = line_of(plan.track);
   plan.town.streets = streets_of(graph);
   plan.town.bounds = bounds_around(plan.town);
-  plan.town.relief = rolling_relief(options.route.origin_height_m, options.town_options.relief_m, options.seed);
+  plan.town.relief = relief_of(options, plan.frame, plan.town.bounds);
+  return plan;
+}
+
+/// The frame `map` whose origin is a position in another frame.
+MapFrame frame_at(const MapFrame& other, const Eigen::Vector2d& p_other, double height_m) {
+  return MapFrame::at(other.projected(), other.to_projected(Eigen::Vector3d(p_other.x(), p_other.y(), height_m)));
+}
+
+DrivePlan plan_in_osm_town(const DriveOptions& options, int threads) {
+  if (options.trajectory) throw UsageError("--trajectory goes with a generated town; in an OSM town the drive follows the streets");
+  const OsmTown osm(options.town, threads);
+  // The route decides where the first pose is, and with it the frame: find it in a frame nearby.
+  const MapFrame nearby = frame_at(options.route, osm.centre_lon_lat());
+  const std::vector<TrackPoint> track = drive_route(options, osm.streets(nearby, osm.buildings(nearby)));
+  DrivePlan plan{frame_at(nearby, track.front().position, options.route.origin_height_m), {}, {}, {}};
+  for (const TrackPoint& point : track) {
+    const Eigen::Isometry3d T_nearby = upright({point.position.x(), point.position.y(), 0}, point.yaw);
+    const Eigen::Isometry3d T_map = plan.frame.pose_to_map(nearby.pose_to_projected(T_nearby));
+    plan.track.push_back({point.stamp_s, T_map.translation().head<2>(), std::atan2(T_map(1, 0), T_map(0, 0))});
+  }
+  plan.buildings = osm.buildings(plan.frame);
+  plan.town.driven = line_of(plan.track);
+  plan.town.streets = streets_of(osm.streets(plan.frame, *plan.buildings));
+  plan.town.bounds = bounds_around(plan.town);
+  plan.town.relief = relief_of(options, plan.frame, plan.town.bounds);
   return plan;
 }
 
@@ -124,11 +176,11 @@ DrivePlan plan_generated(const DriveOptions& options) {
 
 double scan_rate_hz(const DriveOptions& options) { return options.route.rate_hz.value_or(lidar_model(options.sensor).rate_hz); }
 
-DrivePlan plan_drive(const DriveOptions& options) {
+DrivePlan plan_drive(const DriveOptions& options, int threads) {
   if (options.route.trajectory_axes != "camera" && options.route.trajectory_axes != "lidar")
     throw UsageError("--trajectory-axes is camera or lidar, not '" + options.route.trajectory_axes + "'");
-  if (options.town != "generated") throw UsageError("--town takes 'generated'");
-  DrivePlan plan = options.trajectory ? plan_recorded(options) : plan_generated(options);
+  DrivePlan plan = options.town != "generated" ? plan_in_osm_town(options, threads)
+                   : options.trajectory ? plan_recorded(options) : plan_generated(options);
   if (plan.track.size() < 2) throw UsageError("a drive needs two scans at least");
   return plan;
 }

@@ -10,11 +10,11 @@ struct DrivePlan {
   MapFrame frame;
   TownPlan town;
   std::vector<TrackPoint> track;
-  std::vector<Building> buildings;   ///< of an OSM town: outlines and tags as the file has them, not yet on the ground
+  std::optional<std::vector<Building>> buildings;   ///< of an OSM town: as the file has them, not yet on the ground; none: a town is to be generated
 };
 
 /// @throws UsageError, CrsError, IoError, FormatError
-DrivePlan plan_drive(const DriveOptions& options);
+DrivePlan plan_drive(const DriveOptions& options, int threads);
 
 double scan_rate_hz(const DriveOptions& options);
 

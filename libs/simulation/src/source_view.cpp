@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 
-#include <priormap/geodesy/transformer.hpp>
 #include <priormap/simulation/random.hpp>
 
 #include "distance_field.hpp"
@@ -28,11 +27,9 @@ Eigen::Vector2d centre_of(const Ring2& ring) {
 Polygon2 moved(const Polygon2& polygon, double rotation, const Eigen::Vector2d& centre, const Eigen::Vector2d& shift) {
   const Eigen::Rotation2Dd turn(rotation);
   Polygon2 result = polygon;
-  const auto move = [&](Ring2& ring) {
+  for_each_ring(result, [&](Ring2& ring) {
     for (Eigen::Vector2d& p : ring) p = centre + shift + turn * (p - centre);
-  };
-  move(result.exterior);
-  for (Ring2& hole : result.holes) move(hole);
+  });
   return result;
 }
 
@@ -54,29 +51,19 @@ class Gap {
   DistanceField to_gap_;
 };
 
-/// Map coordinates to WGS 84 longitude and latitude, one line or ring at once.
-class ToLonLat {
- public:
-  explicit ToLonLat(const MapFrame& frame) : frame_(frame), wgs84_(Crs::parse("EPSG:4326"), frame.projected().horizontal()) {}
-  std::vector<Eigen::Vector2d> operator()(const std::vector<Eigen::Vector2d>& p_map) const {
-    std::vector<Eigen::Vector3d> points;
-    for (const Eigen::Vector2d& p : p_map) points.emplace_back(p.x(), p.y(), 0);
-    frame_.to_projected(points);
-    wgs84_.inverse(points);
-    std::vector<Eigen::Vector2d> lon_lat;
-    for (const Eigen::Vector3d& p : points) lon_lat.push_back(p.head<2>());
-    return lon_lat;
-  }
-  Polygon2 operator()(const Polygon2& polygon) const {
-    Polygon2 result{(*this)(polygon.exterior), {}};
-    for (const Ring2& hole : polygon.holes) result.holes.push_back((*this)(hole));
-    return result;
-  }
+std::vector<Eigen::Vector2d> to_lon_lat(const MapFrame& frame, const std::vector<Eigen::Vector2d>& p_map) {
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector2d& p : p_map) points.emplace_back(p.x(), p.y(), 0);
+  frame.to_lon_lat(points);
+  std::vector<Eigen::Vector2d> lon_lat;
+  for (const Eigen::Vector3d& p : points) lon_lat.push_back(p.head<2>());
+  return lon_lat;
+}
 
- private:
-  MapFrame frame_;
-  Transformer wgs84_;
-};
+Polygon2 to_lon_lat(const MapFrame& frame, Polygon2 polygon) {
+  for_each_ring(polygon, [&](Ring2& ring) { ring = to_lon_lat(frame, ring); });
+  return polygon;
+}
 
 std::string metres(double value) {
   char text[32];
@@ -84,8 +71,36 @@ std::string metres(double value) {
   return text;
 }
 
+std::string roof_name(RoofShape shape) {
+  switch (shape) {
+    case RoofShape::gabled: return "gabled";
+    case RoofShape::hipped: return "hipped";
+    case RoofShape::half_hipped: return "half-hipped";
+    case RoofShape::pyramidal: return "pyramidal";
+    case RoofShape::skillion: return "skillion";
+    case RoofShape::gambrel: return "gambrel";
+    case RoofShape::mansard: return "mansard";
+    case RoofShape::round: return "round";
+    case RoofShape::cone: return "cone";
+    case RoofShape::dome: return "dome";
+    case RoofShape::onion: return "onion";
+    case RoofShape::flat:
+    case RoofShape::other: break;
+  }
+  return "";
+}
+
+/// What an OSM file said of a building, said again.
+OsmTags tags_of(const BuildingAttributes& source) {
+  OsmTags tags{{"building", "yes"}};
+  if (source.height_m) tags["height"] = metres(*source.height_m);
+  if (source.levels) tags["building:levels"] = metres(*source.levels);
+  if (const std::string shape = roof_name(source.roof_shape); !shape.empty()) tags["roof:shape"] = shape;
+  return tags;
+}
+
 OsmTags tags_of(const Building& building, const BuildingError& error) {
-  if (!building.tags.empty()) return building.tags;
+  if (building.source) return tags_of(*building.source);
   constexpr double levels_height_m = 3;
   OsmTags tags{{"building", building.height_m() > 11 ? "apartments" : "house"}};
   const double height_m = std::max(2.0, building.height_m() + error.height_error_m);
@@ -175,16 +190,15 @@ std::vector<BuildingError> draw_errors(const Town& town, const std::vector<Eigen
 }
 
 OsmExtract osm_of(const Town& town, const std::vector<BuildingError>& errors, const MapFrame& frame) {
-  const ToLonLat to_lon_lat(frame);
   OsmExtract extract;
   for (std::size_t i = 0; i < town.buildings.size(); ++i)
     if (!errors[i].missing)
-      extract.areas.push_back({to_lon_lat(errors[i].apply(town.buildings[i].outline)), tags_of(town.buildings[i], errors[i])});
+      extract.areas.push_back({to_lon_lat(frame, errors[i].apply(town.buildings[i].outline)), tags_of(town.buildings[i], errors[i])});
   for (const Street& street : town.streets)
-    extract.lines.push_back({to_lon_lat(street.line), {{"highway", "residential"}, {"name", street.name}, {"width", metres(2 * street.half_width_m)}}});
+    extract.lines.push_back({to_lon_lat(frame, street.line), {{"highway", "residential"}, {"name", street.name}, {"width", metres(2 * street.half_width_m)}}});
   std::vector<Eigen::Vector2d> trees;
   for (const Tree& tree : town.trees) trees.push_back(tree.foot.head<2>());
-  for (const Eigen::Vector2d& lon_lat : to_lon_lat(trees)) extract.places.push_back({lon_lat, {{"natural", "tree"}}});
+  for (const Eigen::Vector2d& lon_lat : to_lon_lat(frame, trees)) extract.places.push_back({lon_lat, {{"natural", "tree"}}});
   return extract;
 }
 

@@ -34,6 +34,11 @@ RoofPlane rising_from(const Eigen::Vector2d& centre, const Eigen::Vector2d& dire
   return {slope, eaves_z - slope.dot(centre + distance * direction)};
 }
 
+bool slopes_to_all_sides(RoofShape shape) {
+  return shape == RoofShape::hipped || shape == RoofShape::half_hipped || shape == RoofShape::pyramidal || shape == RoofShape::cone ||
+         shape == RoofShape::dome || shape == RoofShape::onion;
+}
+
 }  // namespace
 
 double Building::roof_height(const Eigen::Vector2d& p) const {
@@ -81,13 +86,13 @@ Eigen::Vector2d main_axis(const Ring2& ring) {
 }
 
 std::vector<RoofPlane> roof_planes(const Ring2& outline, RoofShape shape, const Eigen::Vector2d& ridge, double eaves_z, double pitch) {
-  if (shape == RoofShape::flat) return {{Eigen::Vector2d::Zero(), eaves_z}};
+  if (shape == RoofShape::flat || shape == RoofShape::other) return {{Eigen::Vector2d::Zero(), eaves_z}};
   const Rectangle box = rectangle_along(outline, ridge);
   const Eigen::Vector2d across(-box.axis.y(), box.axis.x());
   if (shape == RoofShape::skillion) return {rising_from(box.centre, across, box.half_width, eaves_z, 0.5 * pitch)};
   std::vector<RoofPlane> planes{rising_from(box.centre, across, box.half_width, eaves_z, pitch),
                                 rising_from(box.centre, -across, box.half_width, eaves_z, pitch)};
-  if (shape == RoofShape::hipped) {
+  if (slopes_to_all_sides(shape)) {
     planes.push_back(rising_from(box.centre, box.axis, box.half_length, eaves_z, pitch));
     planes.push_back(rising_from(box.centre, -box.axis, box.half_length, eaves_z, pitch));
   }

@@ -21,6 +21,7 @@ struct RouteOptions {
   std::vector<double> origin_lon_lat{8.390366100045, 48.98254523586602};
   double origin_height_m = 116;
   double start_yaw_deg = 59.56;
+  std::optional<std::string> terrain;
   std::string trajectory_axes = "camera";
   int num_scans = 0;
   int first_scan = 0;
@@ -37,6 +38,7 @@ struct RouteOptions {
     visit("origin", origin_lon_lat, {"LON,LAT of the first pose, WGS 84 (generated towns)", "deg", -180, 180});
     visit("origin-height", origin_height_m, {"ground at the first pose, in the CRS's heights", "m", -500, 9000});
     visit("start-yaw", start_yaw_deg, {"direction of a trajectory's first pose, counter-clockwise from true east", "deg", -360, 360});
+    visit("terrain", terrain, {"terrain model that gives the ground; default: the trajectory's own heights, or hills"});
     visit("trajectory-axes", trajectory_axes, {"camera (KITTI: x right, y down, z forward) or lidar (x forward, y left, z up)"});
     visit("scans", num_scans, {"number of scans; 0: all of the trajectory, 300 on a route", "", 0, 1e7});
     visit("first", first_scan, {"first pose of the trajectory to use", "", 0, 1e7});

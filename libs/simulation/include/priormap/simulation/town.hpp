@@ -1,11 +1,12 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
-#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <priormap/simulation/terrain.hpp>
+#include <priormap/sources/footprint.hpp>
 #include <priormap/tessellation/polygon.hpp>
 
 namespace priormap {
@@ -19,8 +20,6 @@ struct RoofPlane {
   double height(const Eigen::Vector2d& p) const { return slope.dot(p) + z0; }
 };
 
-enum class RoofShape : std::uint8_t { flat, gabled, hipped, skillion };
-
 struct Building {
   std::string id;                  ///< unique in the town: "g17" generated, "way/123" from OSM
   Polygon2 outline;                ///< of the walls, as after `normalize`
@@ -33,7 +32,7 @@ struct Building {
   double storey_height_m = 3;
   double balcony_share = 0;        ///< of the windows above the ground floor
   bool surveyed = true;            ///< stood already when the surface model was flown
-  std::map<std::string, std::string> tags;   ///< of the OSM building it comes from
+  std::optional<BuildingAttributes> source;   ///< what the OSM file it comes from says of it
 
   double roof_height(const Eigen::Vector2d& p) const;   ///< z of the roof's plane above p
   double top_z() const;                                 ///< highest point of the roof over the outline
@@ -83,6 +82,7 @@ struct Town {
 Eigen::Vector2d main_axis(const Ring2& ring);
 
 /// Planes of a roof over an outline, its ridge along `ridge` (unit); eaves at `eaves_z` on the rectangle around the outline along `ridge`.
+/// Shapes that are neither flat nor skillion become gabled, or hipped where they slope to all sides.
 /// @param pitch  height gained per metre (gabled, hipped; half of it for skillion roofs)
 std::vector<RoofPlane> roof_planes(const Ring2& outline, RoofShape shape, const Eigen::Vector2d& ridge, double eaves_z, double pitch);
 

@@ -1,0 +1,69 @@
+#include <priormap/sources/osm_streets.hpp>
+
+#include <osmium/handler.hpp>
+#include <osmium/handler/node_locations_for_ways.hpp>
+#include <osmium/index/map/flex_mem.hpp>
+#include <osmium/io/any_input.hpp>
+#include <osmium/visitor.hpp>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include <priormap/core/error.hpp>
+#include <priormap/sources/osm_tags.hpp>
+
+namespace priormap {
+namespace {
+
+using Locations = osmium::index::map::FlexMem<osmium::unsigned_object_id_type, osmium::Location>;
+using LocationsForWays = osmium::handler::NodeLocationsForWays<Locations>;
+
+/// Usual width of a street by its kind; nothing for ways that are not for cars.
+std::optional<double> usual_width_m(const char* highway) {
+  static const std::map<std::string, double> widths{
+      {"motorway", 12},    {"trunk", 11},         {"primary", 10},        {"secondary", 9},     {"tertiary", 8},      {"unclassified", 7},
+      {"residential", 7},  {"living_street", 6},  {"motorway_link", 6},   {"trunk_link", 6},    {"primary_link", 6},  {"secondary_link", 6},
+      {"tertiary_link", 6}, {"service", 4.5}};
+  const auto found = highway ? widths.find(highway) : widths.end();
+  return found == widths.end() ? std::nullopt : std::optional(found->second);
+}
+
+class StreetCollector : public osmium::handler::Handler {
+ public:
+  void way(const osmium::Way& way) {
+    const std::optional<double> usual = usual_width_m(way.tags()["highway"]);
+    if (!usual || way.tags().has_key("tunnel") || way.tags().has_tag("area", "yes")) return;
+    OsmStreet street{"way/" + std::to_string(way.id()), way.tags().get_value_by_key("name", ""), {}, {}, *usual};
+    if (const char* width = way.tags()["width"]) street.width_m = parse_length_m(width).value_or(*usual);
+    for (const osmium::NodeRef& node : way.nodes()) {
+      if (!node.location().valid()) return;
+      street.nodes.push_back(node.ref());
+      street.lon_lat.emplace_back(node.lon(), node.lat());
+    }
+    if (street.nodes.size() > 1) streets_.emplace(way.id(), std::move(street));
+  }
+  std::map<osmium::object_id_type, OsmStreet> streets_;
+};
+
+}  // namespace
+
+std::vector<OsmStreet> read_osm_streets(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw IoError(file, "does not exist");
+  StreetCollector collector;
+  try {
+    Locations locations;
+    LocationsForWays locations_for_ways(locations);
+    locations_for_ways.ignore_errors();   // streets cut at the extract's edge are left out below
+    osmium::io::Reader reader(osmium::io::File(file.string()), osmium::osm_entity_bits::node | osmium::osm_entity_bits::way);
+    osmium::apply(reader, locations_for_ways, collector);
+    reader.close();
+  } catch (const std::exception& error) {
+    throw FormatError(file, std::string("is not a readable OSM file: ") + error.what());
+  }
+  std::vector<OsmStreet> streets;
+  for (auto& [id, street] : collector.streets_) streets.push_back(std::move(street));
+  return streets;
+}
+
+}  // namespace priormap
