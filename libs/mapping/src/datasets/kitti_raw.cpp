@@ -1,0 +1,79 @@
+// A drive of KITTI raw ("sync"): velodyne_points/data/*.bin and velodyne_points/timestamps.txt ("2011-09-26 13:02:25.951199337").
+// The sensor spins clockwise at 10 Hz and the stamp is the moment it looks forward: the time of a point follows from its azimuth.
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include <priormap/core/error.hpp>
+
+#include "datasets/bin_records.hpp"
+#include "datasets/dataset.hpp"
+#include "datasets/scan_files.hpp"
+
+namespace priormap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double period_s = 0.1;
+
+/// velodyne_points/, whether the drive or that folder itself is named.
+fs::path velodyne_folder(const fs::path& path) { return fs::is_directory(path / "velodyne_points") ? path / "velodyne_points" : path; }
+
+bool recognises(const fs::path& path) { return has_file_ending(velodyne_folder(path) / "data", ".bin"); }
+
+int number_at(const std::string& line, std::size_t at, std::size_t length) {
+  int value = -1;
+  if (line.size() >= at + length) std::from_chars(line.data() + at, line.data() + at + length, value);
+  return value;
+}
+
+double unix_time(const std::string& line, const fs::path& file, std::size_t line_number) {
+  using namespace std::chrono;
+  const year_month_day date{year(number_at(line, 0, 4)), month(static_cast<unsigned>(number_at(line, 5, 2))), day(static_cast<unsigned>(number_at(line, 8, 2)))};
+  const int h = number_at(line, 11, 2), m = number_at(line, 14, 2), s = number_at(line, 17, 2);
+  double fraction = 0;
+  if (line.size() > 19) fraction = std::atof(line.c_str() + 19);
+  if (!date.ok() || h < 0 || m < 0 || s < 0) throw FormatError(file, "line " + std::to_string(line_number) + ": '" + line + "' is no date and time");
+  return static_cast<double>(sys_days(date).time_since_epoch().count()) * 86400 + h * 3600 + m * 60 + s + fraction;
+}
+
+Stamps read_timestamps(const fs::path& file, std::size_t count) {
+  if (!fs::is_regular_file(file)) return read_stamps({}, count);
+  Stamps stamps{{}, file.filename().string()};
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty()) stamps.stamps_s.push_back(unix_time(line, file, stamps.stamps_s.size() + 1));
+  if (stamps.stamps_s.size() != count)
+    throw FormatError(file, "holds " + std::to_string(stamps.stamps_s.size()) + " stamps for " + std::to_string(count) + " scans");
+  return stamps;
+}
+
+void add_times_of_spin(PointCloud& cloud) {
+  cloud.time_s.resize(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    cloud.time_s[i] = static_cast<float>(-std::atan2(cloud.xyz[i].y(), cloud.xyz[i].x()) * (period_s / (2 * std::numbers::pi)));
+}
+
+std::unique_ptr<ScanSource> open(const fs::path& path, const DatasetOptions& options) {
+  const fs::path folder = velodyne_folder(path);
+  const fs::path scans = fs::is_directory(folder / "data") ? folder / "data" : folder;
+  auto files = files_ending(scans, ".bin");
+  auto stamps = read_timestamps(folder / "timestamps.txt", files.size());
+  const fs::path point_times = options.point_times.empty() ? fs::path() : point_times_folder(scans, options.point_times);
+  const bool spin = point_times.empty();
+  ScanSourceInfo info{"kitti-raw", stamps.origin, spin ? "spinning model" : "point_times", 0};
+  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), point_times, [spin](const fs::path& file) {
+    PointCloud cloud = read_float_records(file, 4);
+    if (spin) add_times_of_spin(cloud);
+    return cloud;
+  });
+}
+
+}  // namespace
+
+Dataset kitti_raw_dataset() { return {"kitti-raw", recognises, open}; }
+
+}  // namespace priormap
