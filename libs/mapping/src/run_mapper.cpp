@@ -1,0 +1,161 @@
+#include <priormap/mapping/run_mapper.hpp>
+
+#include <algorithm>
+#include <chrono>
+
+#include <priormap/core/error.hpp>
+#include <priormap/core/process.hpp>
+#include <priormap/core/version.hpp>
+#include <priormap/mapping/mapper.hpp>
+#include <priormap/mapping/read_ahead.hpp>
+
+#include "run_report.hpp"
+#include "trajectory_writer.hpp"
+
+namespace priormap {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+  /// Seconds since the last lap.
+  double lap() {
+    const double now = seconds(), since = now - last_;
+    last_ = now;
+    return since;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double last_ = 0;
+};
+
+struct ScanRange {
+  std::size_t first, last;
+};
+
+ScanRange range_of(const ScanSource& source, const RunOptions& options) {
+  if (options.start >= source.size())
+    throw UsageError("--start " + std::to_string(options.start) + " is beyond the end: there are " + std::to_string(source.size()) + " scans (counted from 0)");
+  const std::size_t available = source.size() - options.start;
+  return {options.start, options.start + (options.limit == 0 ? available : std::min<std::size_t>(options.limit, available))};
+}
+
+Scan first_scan(const ScanSource& source, std::size_t index) {
+  Scan scan = source.read(index);
+  if (scan.points.empty())
+    throw FormatError(source.file(index), "the scan holds no points" + std::string(scan.num_skipped ? " that are finite" : "") + "; begin at a later one with --start");
+  return scan;
+}
+
+/// The online pass: every scan once, in order.
+std::vector<MappedScan> map_scans(Mapper& mapper, const ScanSource& source, ScanRange range, const Events& events) {
+  ReadAhead scans(source, range.first, range.last);
+  std::vector<double> step_s;
+  Stopwatch watch;
+  std::size_t num_empty = 0;
+  while (const auto scan = scans.next()) {
+    num_empty += scan->points.empty();
+    mapper.step(*scan);
+    step_s.push_back(watch.lap());
+    events.advance("mapping", static_cast<double>(step_s.size()) / static_cast<double>(range.last - range.first));
+  }
+  if (num_empty) events.warn(std::to_string(num_empty) + " scans hold no points; the motion was carried on there");
+  std::vector<MappedScan> mapped = mapper.finish();
+  for (std::size_t i = 0; i < mapped.size(); ++i) mapped[i].step_s = step_s[i];
+  return mapped;
+}
+
+void warn_of_bad_start(const MappedScan& first, const Events& events) {
+  if (!first.prior || first.prior->accepted) return;
+  events.warn("the first scan does not match the prior (" + std::to_string(first.prior->num_inliers) + " of " +
+              std::to_string(first.prior->num_correspondences) + " points near it fit): check the initial pose");
+}
+
+PriorManifest map_manifest(const RunOptions& options, const PriorPoints* prior, const Start& start, const ScanSource& source, const std::vector<MappedScan>& scans) {
+  PriorManifest manifest;
+  if (start.crs) {
+    manifest.crs = start.crs->name();
+    if (start.crs->has_vertical()) manifest.vertical = start.crs->vertical()->name();
+  }
+  manifest.generator = "mapper " + std::string(version);
+  PriorSource scanned;
+  scanned.id = "scans";
+  scanned.kind = "mapper";
+  scanned.file_name = options.scans.filename().string();
+  scanned.sha256 = listing_hash(source, scans);
+  scanned.crs = manifest.crs;
+  scanned.facts = {{"scans", std::to_string(scans.size())}, {"dataset", source.info().dataset}, {"preset", options.preset}};
+  if (prior) {
+    scanned.facts.emplace_back("prior", prior->identity().name);
+    for (const auto& text : prior->identity().attributions) scanned.attribution += (scanned.attribution.empty() ? "placed against: " : "; ") + text;
+  }
+  manifest.sources = {scanned};
+  return manifest;
+}
+
+double quantile(std::vector<double> values, double q) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+std::size_t count(const std::vector<MappedScan>& scans, Verdict verdict) {
+  return static_cast<std::size_t>(std::count_if(scans.begin(), scans.end(), [&](const MappedScan& s) { return s.verdict == verdict; }));
+}
+
+RunSummary summarise(const std::vector<MappedScan>& scans) {
+  RunSummary summary;
+  summary.num_scans = scans.size();
+  std::vector<double> ms;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (i) summary.length_m += (scans[i].T_map_sensor.translation() - scans[i - 1].T_map_sensor.translation()).norm();
+    ms.push_back(1e3 * scans[i].step_s);
+    summary.mean_scan_ms += ms.back() / static_cast<double>(scans.size());
+  }
+  summary.median_scan_ms = quantile(ms, 0.5);
+  summary.p95_scan_ms = quantile(ms, 0.95);
+  summary.num_anchored = count(scans, Verdict::anchored);
+  summary.num_weak = count(scans, Verdict::weak);
+  summary.num_dead_reckoned = count(scans, Verdict::dead_reckoned);
+  summary.num_outside_prior = count(scans, Verdict::outside_prior);
+  summary.num_lost = count(scans, Verdict::lost);
+  return summary;
+}
+
+}  // namespace
+
+RunSummary run_mapper(const RunOptions& options, int threads, Overwrite overwrite, const Events& events) {
+  Stopwatch watch;
+  StageTimes times;
+  AtomicDirectory output(options.output, overwrite, "run.json");
+  const MapperOptions method = MapperOptions::preset(options.preset);
+  const auto source = open_scans(options.scans, options.dataset);
+  const ScanRange range = range_of(*source, options);
+  const auto prior = options.prior.empty() ? nullptr : open_prior(options.prior, options.prior_options);
+  const Start start = find_start(options.initial, prior.get(), first_scan(*source, range.first).points, method.prior_radius_m);
+  std::optional<PriorMap> prior_map;
+  if (prior) prior_map.emplace(*prior, start.frame, method.voxels, method.prior_radius_m);
+  Mapper mapper(method, prior_map ? &*prior_map : nullptr, start.T_map_sensor, threads);
+  times.start_s = watch.lap();
+
+  const std::vector<MappedScan> scans = map_scans(mapper, *source, range, events);
+  if (prior) warn_of_bad_start(scans.front(), events);
+  times.online_s = watch.lap();
+
+  RunSummary summary = summarise(scans);
+  write_trajectories(output.temporary_path(), scans, start.frame);
+  if (!options.no_map)
+    summary.num_map_points = write_map(output.temporary_path() / "map", *source, scans, start.frame, map_manifest(options, prior.get(), start, *source, scans),
+                                       options.map, threads, events).num_points;
+  times.map_s = watch.lap();
+  summary.total_s = watch.seconds();
+  summary.peak_memory_bytes = peak_memory_bytes();
+  write_run_report(output.temporary_path() / "run.json", {options, method, *source, prior.get(), start, scans, summary, times, threads});
+  output.commit();
+  return summary;
+}
+
+}  // namespace priormap

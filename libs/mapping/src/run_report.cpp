@@ -1,0 +1,147 @@
+#include "run_report.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include <priormap/core/hash.hpp>
+#include <priormap/core/output_file.hpp>
+#include <priormap/core/version.hpp>
+
+namespace priormap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double rounded(double value, double step) { return std::round(value / step) * step; }
+double milliseconds(double seconds) { return rounded(seconds * 1e3, 1e-3); }
+
+/// Collects an options aggregate by its own description.
+struct JsonVisitor {
+  Json& object;
+  template <class Value>
+  void operator()(const std::string& name, const Value& value, const OptionField&) { object[name] = value; }
+};
+
+template <class Options>
+Json described(Options options) {
+  Json object = Json::object();
+  JsonVisitor visitor{object};
+  options.describe(visitor);
+  return object;
+}
+
+Json configuration(const RunFacts& facts) {
+  Json json = {{"preset", facts.options.preset}, {"threads", facts.threads}, {"start", facts.options.start}, {"limit", facts.options.limit}};
+  json["method"] = described(facts.method);
+  json["map"] = facts.options.no_map ? Json() : described(facts.options.map);
+  json["initial_pose_from"] = !facts.options.initial.lon_lat_deg.empty() ? "longitude and latitude" : !facts.options.initial.pose.empty() ? "pose" : "origin";
+  return json;
+}
+
+Json scans_input(const RunFacts& facts) {
+  const auto& info = facts.source.info();
+  return {{"name", facts.options.scans.filename().empty() ? facts.options.scans.parent_path().filename().string() : facts.options.scans.filename().string()},
+          {"dataset", info.dataset},
+          {"available", facts.source.size()},
+          {"stamps", info.stamps},
+          {"point_times", info.point_times},
+          {"vertical_angle_correction_deg", info.vertical_angle_correction_deg},
+          {"names_and_sizes_sha256", listing_hash(facts.source, facts.scans)}};
+}
+
+Json prior_input(const PriorPoints* prior) {
+  if (!prior) return nullptr;
+  const auto& identity = prior->identity();
+  return {{"name", identity.name},
+          {"sha256", identity.sha256},
+          {"points", identity.num_points},
+          {"crs", prior->crs() ? Json(prior->crs()->name()) : Json()},
+          {"attributions", identity.attributions}};
+}
+
+Json frame(const Start& start) {
+  const MapFrame& f = start.frame;
+  if (!f.georeferenced()) return {{"georeferenced", false}, {"crs", nullptr}};
+  const Eigen::Vector3d first = start.T_map_sensor.translation();
+  const GeoPoint origin = f.origin();
+  constexpr double deg = 180 / std::numbers::pi;
+  return {{"georeferenced", true},
+          {"crs", start.crs->name()},
+          {"vertical", start.crs->has_vertical() ? Json(start.crs->vertical()->name()) : Json()},
+          {"definition", f.definition()},
+          {"origin", {{"lon_deg", origin.lon_deg}, {"lat_deg", origin.lat_deg}, {"ellipsoidal_height_m", origin.height_m}}},
+          {"scale_factor", f.scale_factor()},
+          {"grid_scale", f.grid_scale(first)},
+          {"grid_rotation_deg", f.grid_rotation(first) * deg},
+          {"convergence_deg", f.convergence(first) * deg}};
+}
+
+Json match(const std::optional<MatchFigures>& figures) {
+  if (!figures) return nullptr;
+  return {{"correspondences", figures->num_correspondences},
+          {"inliers", figures->num_inliers},
+          {"iterations", figures->iterations},
+          {"inlier_rmse_m", rounded(figures->inlier_rmse_m, 1e-6)},
+          {"converged", figures->converged},
+          {"accepted", figures->accepted}};
+}
+
+Json scan_row(const MappedScan& scan) {
+  return {{"index", scan.index},
+          {"points", scan.num_points},
+          {"skipped", scan.num_skipped},
+          {"verdict", to_string(scan.verdict)},
+          {"standstill", scan.standstill},
+          {"local", match(scan.local)},
+          {"prior", match(scan.prior)},
+          {"ms", milliseconds(scan.step_s)}};
+}
+
+Json totals(const RunFacts& facts) {
+  const RunSummary& s = facts.summary;
+  return {{"scans", s.num_scans},
+          {"length_m", rounded(s.length_m, 1e-3)},
+          {"map_points", s.num_map_points},
+          {"verdicts",
+           {{"anchored", s.num_anchored},
+            {"weak", s.num_weak},
+            {"dead-reckoned", s.num_dead_reckoned},
+            {"outside-prior", s.num_outside_prior},
+            {"lost", s.num_lost}}},
+          {"ms_a_scan", {{"mean", rounded(s.mean_scan_ms, 1e-3)}, {"median", rounded(s.median_scan_ms, 1e-3)}, {"p95", rounded(s.p95_scan_ms, 1e-3)}}},
+          {"seconds",
+           {{"start", rounded(facts.times.start_s, 1e-6)},
+            {"online", rounded(facts.times.online_s, 1e-6)},
+            {"estimate", rounded(facts.times.estimate_s, 1e-6)},
+            {"map", rounded(facts.times.map_s, 1e-6)},
+            {"total", rounded(s.total_s, 1e-6)}}},
+          {"peak_memory_bytes", s.peak_memory_bytes}};
+}
+
+}  // namespace
+
+std::string listing_hash(const ScanSource& source, const std::vector<MappedScan>& scans) {
+  Sha256 hash;
+  for (const auto& scan : scans) {
+    const auto file = source.file(scan.index);
+    hash.update(file.filename().string() + " " + std::to_string(std::filesystem::file_size(file)) + "\n");
+  }
+  return hash.hex_digest();
+}
+
+void write_run_report(const std::filesystem::path& file, const RunFacts& facts) {
+  Json rows = Json::array();
+  for (const auto& scan : facts.scans) rows.push_back(scan_row(scan));
+  const Json report = {{"generator", "mapper " + std::string(version)},
+                       {"configuration", configuration(facts)},
+                       {"inputs", {{"scans", scans_input(facts)}, {"prior", prior_input(facts.prior)}}},
+                       {"frame", frame(facts.start)},
+                       {"totals", totals(facts)},
+                       {"scans", rows}};
+  OutputFile out(file);
+  out << report.dump(1) << '\n';
+  out.close();
+}
+
+}  // namespace priormap

@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+
+#include <priormap/mapping/mapper.hpp>
+
+#include "town.hpp"
+
+namespace priormap {
+namespace {
+
+using test::pose;
+using test::scan_from;
+
+double position_error(const MappedScan& scan, const Eigen::Isometry3d& truth) { return (scan.T_map_sensor.translation() - truth.translation()).norm(); }
+
+class Street : public testing::Test {
+ protected:
+  static constexpr int num_scans = 12;
+  static Eigen::Isometry3d truth(int k) { return pose(1.2 * k, 0.5 * std::sin(0.1 * k), 1.7, 0.02 * k); }
+  static constexpr double length_m = 30;
+  const std::vector<Eigen::Vector3d> world_ = test::street(length_m, 1);
+};
+
+TEST_F(Street, OdometryFollowsTheMotion) {
+  Mapper mapper(MapperOptions::paper(), nullptr, truth(0), 1);
+  for (int k = 0; k < num_scans; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+  const auto scans = mapper.finish();
+  ASSERT_EQ(scans.size(), static_cast<std::size_t>(num_scans));
+  for (int k = 0; k < num_scans; ++k) EXPECT_LT(position_error(scans[static_cast<std::size_t>(k)], truth(k)), 0.15) << k;
+  EXPECT_EQ(scans.back().verdict, Verdict::outside_prior);
+}
+
+TEST_F(Street, ThePriorCorrectsAWrongStartAndAnchorsTheDrive) {
+  const test::TiledPoints tiles(world_, 50);
+  PriorMap prior(tiles, MapFrame::local(), {}, 150);
+  Mapper mapper(MapperOptions::paper(), &prior, pose(0.5, -0.4, 1.9, 0.03), 1);
+  for (int k = 0; k < num_scans; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+  for (int k = 0; k < num_scans; ++k) {
+    const MappedScan scan = mapper.finish()[static_cast<std::size_t>(k)];
+    EXPECT_LT(position_error(scan, truth(k)), 0.15) << k;
+    EXPECT_EQ(scan.verdict, Verdict::anchored);
+    EXPECT_TRUE(scan.prior->accepted);
+  }
+}
+
+TEST_F(Street, SigmasGrowWithoutAPriorAndNotWithOne) {
+  const test::TiledPoints tiles(world_, 50);
+  PriorMap prior(tiles, MapFrame::local(), {}, 150);
+  Mapper anchored(MapperOptions::paper(), &prior, truth(0), 1), drifting(MapperOptions::paper(), nullptr, truth(0), 1);
+  for (int k = 0; k < 12; ++k) {
+    const Scan scan = scan_from(length_m, truth(k), static_cast<std::size_t>(k));
+    anchored.step(scan);
+    drifting.step(scan);
+  }
+  const auto with = anchored.finish(), without = drifting.finish();
+  EXPECT_GT(without[11].covariance(3, 3), 2 * without[3].covariance(3, 3));
+  EXPECT_LT(with[11].covariance(3, 3), 2 * with[3].covariance(3, 3));
+}
+
+TEST_F(Street, AVehicleThatStandsRepeatsItsPose) {
+  Mapper mapper(MapperOptions::paper(), nullptr, truth(0), 1);
+  for (int k = 0; k < 5; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+  for (int k = 5; k < 9; ++k) mapper.step(scan_from(length_m, truth(4), static_cast<std::size_t>(k)));
+  const auto scans = mapper.finish();
+  for (std::size_t k = 5; k < 9; ++k) {
+    EXPECT_TRUE(scans[k].standstill);
+    EXPECT_TRUE(scans[k].T_map_sensor.isApprox(scans[4].T_map_sensor));
+  }
+}
+
+TEST_F(Street, CreepingAddsUpUntilItIsSeen) {
+  Mapper mapper(MapperOptions::paper(), nullptr, pose(0, 0, 1.7, 0), 1);
+  for (int k = 0; k < 20; ++k) mapper.step(scan_from(length_m, pose(0.04 * k, 0, 1.7, 0), static_cast<std::size_t>(k)));
+  const auto scans = mapper.finish();
+  EXPECT_TRUE(scans[1].standstill);
+  EXPECT_NEAR(scans.back().T_map_sensor.translation().x(), 0.76, 0.15);
+}
+
+TEST_F(Street, WhereThePriorEndsTheDriveGoesOn) {
+  auto half = world_;
+  std::erase_if(half, [](const Eigen::Vector3d& p) { return p.x() > -28; });
+  const test::TiledPoints tiles(half, 50);
+  PriorMap prior(tiles, MapFrame::local(), {}, 150);
+  Mapper mapper(MapperOptions::paper(), &prior, truth(0), 1);
+  for (int k = 0; k < num_scans; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+  const auto scans = mapper.finish();
+  EXPECT_EQ(scans.back().verdict, Verdict::outside_prior);
+  EXPECT_LT(position_error(scans.back(), truth(num_scans - 1)), 1.0);  // the rim of the prior pulls: 6 m correspondences have no other partner
+}
+
+TEST_F(Street, AScanWithoutPointsCarriesTheMotionOn) {
+  Mapper mapper(MapperOptions::paper(), nullptr, truth(0), 1);
+  for (int k = 0; k < 10; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+  Scan empty;
+  empty.index = 10;
+  EXPECT_EQ(mapper.step(empty).verdict, Verdict::lost);
+  mapper.step(scan_from(length_m, truth(11), 11));
+  const auto scans = mapper.finish();
+  EXPECT_LT(position_error(scans[10], truth(10)), 0.3);
+  EXPECT_LT(position_error(scans[11], truth(11)), 0.2);
+}
+
+TEST_F(Street, ThreadsDoNotChangeTheResult) {
+  const test::TiledPoints tiles(world_, 50);
+  std::vector<std::vector<MappedScan>> runs;
+  for (const int threads : {1, 3}) {
+    PriorMap prior(tiles, MapFrame::local(), {}, 150);
+    Mapper mapper(MapperOptions::paper(), &prior, truth(0), threads);
+    for (int k = 0; k < 6; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+    runs.push_back(mapper.finish());
+  }
+  for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(runs[0][k].T_map_sensor.matrix(), runs[1][k].T_map_sensor.matrix());
+}
+
+}  // namespace
+}  // namespace priormap

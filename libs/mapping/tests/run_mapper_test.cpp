@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+
+#include <priormap/mapping/run_mapper.hpp>
+#include <priormap/pointcloud/point_formats.hpp>
+
+#include "scan_folder.hpp"
+#include "town.hpp"
+
+namespace priormap {
+namespace {
+
+std::string schema_violations(const nlohmann::json& document) {
+  std::ifstream file(PRIORMAP_SOURCE_DIR "/schemas/run-report.schema.json");
+  const nlohmann::json schema_json = nlohmann::json::parse(file);
+  valijson::Schema schema;
+  valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(schema_json), schema);
+  valijson::ValidationResults results;
+  valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(document), &results);
+  std::string text;
+  for (valijson::ValidationResults::Error error; results.popError(error);) {
+    for (const auto& part : error.context) text += part;
+    text += ": " + error.description + "\n";
+  }
+  return text;
+}
+
+class Run : public testing::Test {
+ protected:
+  Run() {
+    for (int k = 0; k < 3; ++k) {
+      std::vector<float> records;
+      for (const auto& p : test::scan_from(10, test::pose(1.2 * k, 0, 1.7, 0), static_cast<std::size_t>(k)).points.xyz)
+        records.insert(records.end(), {p.x(), p.y(), p.z(), 0.5f});
+      test::write_raw(folder_.path() / "scans" / (std::to_string(k) + ".bin"), records);
+    }
+    PointCloud prior;
+    for (const auto& p : test::street(10, 1)) prior.xyz.push_back(p.cast<float>());
+    write_point_cloud(folder_.path() / "prior.ply", prior);
+    options_.preset = "paper";
+    options_.scans = folder_.path() / "scans";
+    options_.output = folder_.path() / "out";
+  }
+
+  nlohmann::json report() const {
+    std::ifstream file(options_.output / "run.json");
+    return nlohmann::json::parse(file);
+  }
+
+  const test::Folder folder_;
+  RunOptions options_;
+};
+
+TEST_F(Run, OdometryReportHoldsItsSchema) {
+  options_.no_map = true;
+  run_mapper(options_, 1, Overwrite::refuse, {});
+  EXPECT_EQ(schema_violations(report()), "");
+  EXPECT_EQ(report()["scans"].size(), 3u);
+}
+
+TEST_F(Run, GeoreferencedReportHoldsItsSchema) {
+  options_.prior = folder_.path() / "prior.ply";
+  options_.prior_options = {"EPSG:25832+7837", {640000, 5359000, 490}, ""};
+  options_.initial.pose = {640000.2, 5359000, 491.7, 0, 0, 0, 1};
+  const RunSummary summary = run_mapper(options_, 1, Overwrite::refuse, {});
+  EXPECT_EQ(schema_violations(report()), "");
+  EXPECT_EQ(summary.num_anchored, 3u);
+  EXPECT_EQ(report()["totals"]["map_points"], summary.num_map_points);
+  EXPECT_GT(summary.num_map_points, 1000u);
+  // UTM zone 32 near 10.89 E: grid north lies 1.41 degrees clockwise of true north, a metre of map is 0.99977 m of grid.
+  EXPECT_NEAR(report()["frame"]["grid_rotation_deg"], 1.41, 0.02);
+  EXPECT_NEAR(report()["frame"]["grid_scale"], 0.99977, 2e-5);
+}
+
+TEST_F(Run, TheSchemaSeesAFault) {
+  run_mapper(options_, 1, Overwrite::refuse, {});
+  auto broken = report();
+  broken["scans"][1]["verdict"] = "fine";
+  EXPECT_NE(schema_violations(broken), "");
+}
+
+}  // namespace
+}  // namespace priormap

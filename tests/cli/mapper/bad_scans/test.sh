@@ -1,0 +1,26 @@
+fails_with 1 "nowhere: no such file or folder of scans" mapper --scans nowhere -o out
+mkdir empty
+fails_with 1 "empty: no scans found" mapper --scans empty -o out
+make_street drive
+mkdir cut nothing nan
+head -c 1000 drive/velodyne/000000.bin >cut/000000.bin
+fails_with 1 "000000.bin: cut short" mapper --scans cut -o out
+: >nothing/000000.bin
+fails_with 1 "000000.bin: the scan holds no points" mapper --scans nothing -o out
+printf '\x00\x00\xc0\x7f\x00\x00\xc0\x7f\x00\x00\xc0\x7f\x00\x00\x00\x00' >nan/000000.bin
+fails_with 1 "000000.bin: the scan holds no points that are finite" mapper --scans nan -o out
+fails_with 2 "--start 6 is beyond the end: there are 6 scans" mapper --scans drive --start 6 -o out
+echo 0.7 >>drive/times.txt
+fails_with 1 "times.txt: holds 7 stamps for 6 scans" mapper --scans drive -o out
+expect_absent out
+# In the middle of a drive, NaN points are left out and counted, and an empty scan is bridged with a warning.
+head -6 drive/times.txt >times && mv times drive/times.txt
+cat nan/000000.bin >>drive/velodyne/000001.bin
+: >drive/velodyne/000003.bin
+succeeds mapper --scans drive --preset paper -o out
+expect_in stderr "1 scans hold no points"
+expect_in out/run.json '"skipped": 1,'
+# And a drive that breaks in its middle leaves nothing behind.
+head -c 1000 drive/velodyne/000000.bin >drive/velodyne/000004.bin
+fails_with 1 "000004.bin: cut short" mapper --scans drive --quiet -o out2
+expect_absent out2
