@@ -47,35 +47,18 @@ inline std::int32_t floor_of(float v) {
   return i - (v < float(i));
 }
 
-/// Best and second best over all candidates seen, lane by lane, with the number of the candidate.
-struct Best {
-  vfloat first, second;
-  vint number;
-};
-
-/// Candidates [begin, end) of one block for the query at (x, y, z) from its corner, numbered from `number`.
-inline void search_run(const BlockView& block, std::uint32_t begin, std::uint32_t end, float x, float y, float z, std::int32_t number, vint lanes,
-                       Best& best) {
-  for (std::uint32_t i = begin; i < end; i += LANES) {
-    const vfloat dx = load(block.x + i) - x, dy = load(block.y + i) - y, dz = load(block.z + i) - z;
-    const vfloat d = lanes < std::int32_t(end - i) ? dx * dx + dy * dy + dz * dz : all(far);
-    const vint closer = d < best.first;
-    const vfloat loser = closer ? best.first : d;
-    best.second = loser < best.second ? loser : best.second;
-    best.first = closer ? d : best.first;
-    best.number = closer ? lanes + (number + std::int32_t(i - begin)) : best.number;
-  }
-}
-
 /// The runs of candidates of one query: rows of up to three voxels along x, cut where a block ends.
 struct Run {
-  std::uint32_t block, begin, end;
-  std::int32_t number;  // of its first candidate
+  std::uint32_t block, begin;
+  int number;  // of its first candidate
 };
+
+constexpr int max_candidates = 252;
+typedef float vfour __attribute__((vector_size(16), aligned(4), may_alias));  // a run is seldom longer
+inline vfour load4(const float* p) { return *reinterpret_cast<const vfour*>(p); }
 
 void find_nearest(const MapView& map, const std::int32_t* anchor, const float* qx, const float* qy, const float* qz, const std::uint32_t* which,
                   std::size_t count, const Nearest& out) {
-  const vint lanes = lane_numbers();
   const float per_metre = 1.0f / map.voxel_m;
   for (std::size_t w = 0; w < count; ++w) {
     const std::uint32_t q = which[w];
@@ -87,9 +70,8 @@ void find_nearest(const MapView& map, const std::int32_t* anchor, const float* q
       inside[a] = (low[a] + anchor[a]) & 7;
     }
     Run runs[18];
-    int run_count = 0;
-    std::int32_t number = 0;
-    Best best = {all(far), all(far), vint{} - 1};
+    int run_count = 0, number = 0;
+    float squared[max_candidates + 4];
     for (int bz = 0; bz <= (inside[2] > 5); ++bz)
       for (int by = 0; by <= (inside[1] > 5); ++by)
         for (int bx = 0; bx <= (inside[0] > 5); ++bx) {
@@ -108,22 +90,24 @@ void find_nearest(const MapView& map, const std::int32_t* anchor, const float* q
               const int row = 8 * (vy + 8 * vz);
               const std::uint32_t begin = block.begin[row + x0], end = block.begin[row + x1 + 1];
               if (begin == end) continue;
-              runs[run_count++] = {b, begin, end, number};
-              search_run(block, begin, end, x, y, z, number, lanes, best);
-              number += std::int32_t(end - begin);
+              if (number + int(end - begin) > max_candidates) continue;
+              runs[run_count++] = {b, begin, number};
+              for (std::uint32_t i = begin; i < end; i += 4) {
+                const vfour dx = load4(block.x + i) - x, dy = load4(block.y + i) - y, dz = load4(block.z + i) - z;
+                *reinterpret_cast<vfour*>(squared + number + (i - begin)) = dx * dx + dy * dy + dz * dz;
+              }
+              number += int(end - begin);
             }
         }
     float first = far, second = far;
-    std::int32_t winner = -1;
-    for (int l = 0; l < LANES; ++l) {
-      const float d = best.first[l];
-      if (d < first || (d == first && best.number[l] < winner)) {
-        second = first < best.second[l] ? first : best.second[l];
-        first = d;
-        winner = best.number[l];
-      } else {
-        second = d < second ? d : second;
-      }
+    int winner = -1;
+    for (int c = 0; c < number; ++c) {
+      const float d = squared[c];
+      const bool closer = d < first;
+      const float loser = closer ? first : d;
+      second = loser < second ? loser : second;
+      first = closer ? d : first;
+      winner = closer ? c : winner;
     }
     out.squared[q] = first;
     out.second_squared[q] = second;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <priormap/core/error.hpp>
 #include <priormap/registration/scan_reducer.hpp>
 #include <priormap/registration/voxel_index.hpp>
@@ -7,84 +6,116 @@
 namespace priormap {
 namespace {
 
-constexpr std::uint32_t empty_slot = 0xffffffffu;
-constexpr float half_range = 1048576.0f;  // 2^20 voxels: 21 bits an axis
+constexpr std::int32_t half_range = 1 << 20;  // voxels: 21 bits an axis
+constexpr std::uint64_t no_key = ~std::uint64_t(0);
 
-std::size_t slot_hash(std::uint64_t key) { return (key * 0x9e3779b97f4a7c15u) >> 20; }
+std::size_t hash_of(std::uint64_t key) { return (key * 0x9e3779b97f4a7c15u) >> 32; }
+
+/// The point of four floats [x, y, z, any]: SSE2 on x86-64, NEON on arm64.
+typedef float vfloat4 __attribute__((vector_size(16), aligned(4), may_alias));
+typedef std::int32_t vint4 __attribute__((vector_size(16)));
+
+std::uint64_t key_of(std::int32_t x, std::int32_t y, std::int32_t z) {
+  return (std::uint64_t(std::uint32_t(x + half_range)) << 42) | (std::uint64_t(std::uint32_t(y + half_range)) << 21) | std::uint32_t(z + half_range);
+}
+
+Eigen::Vector3f centre_of(std::uint64_t key) {
+  const auto axis = [&](int shift) { return float(std::int32_t((key >> shift) & 0x1fffff) - half_range) + 0.5f; };
+  return {axis(42), axis(21), axis(0)};
+}
+
+Surfel surfel_of(const float* sums, const Eigen::Vector3f& centre) {
+  const float per_point = 1.0f / sums[3];
+  const Eigen::Vector3f mean = per_point * Eigen::Vector3f(sums[0], sums[1], sums[2]);
+  Surfel s;
+  s.count = sums[3];
+  s.mean = centre + mean;
+  s.covariance << sums[4] * per_point - mean.x() * mean.x(), sums[5] * per_point - mean.x() * mean.y(),
+      sums[6] * per_point - mean.x() * mean.z(), sums[7] * per_point - mean.y() * mean.y(), sums[8] * per_point - mean.y() * mean.z(),
+      sums[9] * per_point - mean.z() * mean.z();
+  return s;
+}
 
 }  // namespace
 
-ScanReducer::ScanReducer(double voxel_m) : voxel_m_(float(voxel_m)), slots_(16384, empty_slot) {
+ScanReducer::ScanReducer(double voxel_m) : voxel_m_(float(voxel_m)) {
   if (!(voxel_m > 0)) throw UsageError("scan reduction: the voxel must be above 0 m");
+  table_.assign(16384, Cell{{}, no_key});
 }
 
-void ScanReducer::grow() {
-  slots_.assign(2 * slots_.size(), empty_slot);
-  const std::size_t mask = slots_.size() - 1;
-  for (std::uint32_t i = 0; i < cells_.size(); ++i) {
-    std::size_t slot = slot_hash(cells_[i].key) & mask;
-    while (slots_[slot] != empty_slot) slot = (slot + 1) & mask;
-    slots_[slot] = i;
-  }
+void ScanReducer::clear() {
+  for (const std::uint32_t slot : used_) table_[slot] = Cell{{}, no_key};
+  used_.clear();
 }
 
 ScanReducer::Cell& ScanReducer::cell_of(std::uint64_t key) {
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = slot_hash(key) & mask;
-  while (slots_[slot] != empty_slot) {
-    if (cells_[slots_[slot]].key == key) return cells_[slots_[slot]];
+  const std::size_t mask = table_.size() - 1;
+  std::size_t slot = hash_of(key) & mask;
+  while (table_[slot].key != key) {
+    if (table_[slot].key == no_key) return add_cell(key, slot);
     slot = (slot + 1) & mask;
   }
-  slots_[slot] = std::uint32_t(cells_.size());
-  cells_.push_back({key, 0, {0, 0, 0}, {0, 0, 0, 0, 0, 0}});
-  if (2 * cells_.size() > slots_.size()) grow();
-  return cells_.back();
+  return table_[slot];
+}
+
+ScanReducer::Cell& ScanReducer::add_cell(std::uint64_t key, std::size_t slot) {
+  if (2 * used_.size() < table_.size()) {
+    used_.push_back(std::uint32_t(slot));
+    table_[slot].key = key;
+    return table_[slot];
+  }
+  std::vector<Cell> old(2 * table_.size(), Cell{{}, no_key});
+  old.swap(table_);
+  const std::size_t mask = table_.size() - 1;
+  for (std::uint32_t& used : used_) {
+    std::size_t place = hash_of(old[used].key) & mask;
+    while (table_[place].key != no_key) place = (place + 1) & mask;
+    table_[place] = old[used];
+    used = std::uint32_t(place);
+  }
+  return cell_of(key);
+}
+
+/// Adds `count` points; the float after the last one must be readable.
+void ScanReducer::add(const float* xyz, std::size_t count) {
+  constexpr auto limit = float(half_range);
+  const float per_metre = 1.0f / voxel_m_;
+  const vfloat4 ones = {1.0f, 1.0f, 1.0f, 1.0f};
+  vint4 last = vint4{} + half_range;  // no point's voxel
+  Cell* cell = nullptr;
+  for (const float* const end = xyz + 3 * count; xyz != end; xyz += 3) {
+    const vfloat4 p = *reinterpret_cast<const vfloat4*>(xyz);
+    const vfloat4 v = p * per_metre;
+    const vint4 inside = (v > -limit) & (v < limit);  // false when not a number
+    const vint4 truncated = __builtin_convertvector(v, vint4);
+    const vint4 voxel = truncated + (v < __builtin_convertvector(truncated, vfloat4));  // the floor: true is -1
+    const vint4 changed = (voxel ^ last) | ~inside;
+    if (changed[0] | changed[1] | changed[2]) {
+      if (!(inside[0] & inside[1] & inside[2])) continue;
+      cell = &cell_of(key_of(voxel[0], voxel[1], voxel[2]));
+      last = voxel;
+    }
+    const vfloat4 r = p - (__builtin_convertvector(voxel, vfloat4) + 0.5f) * voxel_m_;
+    const vfloat4 with_one = __builtin_shufflevector(r, ones, 0, 1, 2, 7);
+    vfloat4* const sums = reinterpret_cast<vfloat4*>(cell->sums);
+    sums[0] += with_one;
+    sums[1] += __builtin_shufflevector(r, r, 0, 0, 0, 1) * __builtin_shufflevector(r, r, 0, 1, 2, 1);
+    sums[2] += __builtin_shufflevector(r, r, 1, 2, 2, 2) * __builtin_shufflevector(r, r, 2, 2, 2, 2);
+  }
 }
 
 SurfelCloud ScanReducer::reduce(const PointCloud& scan) {
-  cells_.clear();
-  std::fill(slots_.begin(), slots_.end(), empty_slot);
-  const float per_metre = 1.0f / voxel_m_;
-  std::uint64_t last_key = ~std::uint64_t(0);
-  Cell* cell = nullptr;
-  for (const Eigen::Vector3f& p : scan.xyz) {
-    const Eigen::Vector3f v = p * per_metre;
-    if (!(v.cwiseAbs().maxCoeff() < half_range)) continue;  // also when not a number
-    // Shifted to be positive, truncation is the floor.
-    const auto ix = std::uint32_t(std::int32_t(std::floor(v.x())) + 1048576);
-    const auto iy = std::uint32_t(std::int32_t(std::floor(v.y())) + 1048576);
-    const auto iz = std::uint32_t(std::int32_t(std::floor(v.z())) + 1048576);
-    const std::uint64_t key = (std::uint64_t(ix) << 42) | (std::uint64_t(iy) << 21) | iz;
-    if (key != last_key) {
-      cell = &cell_of(key);
-      last_key = key;
-    }
-    const float x = p.x() - (float(std::int32_t(ix) - 1048576) + 0.5f) * voxel_m_;
-    const float y = p.y() - (float(std::int32_t(iy) - 1048576) + 0.5f) * voxel_m_;
-    const float z = p.z() - (float(std::int32_t(iz) - 1048576) + 0.5f) * voxel_m_;
-    cell->count += 1.0f;
-    cell->sum[0] += x, cell->sum[1] += y, cell->sum[2] += z;
-    cell->squares[0] += x * x, cell->squares[1] += x * y, cell->squares[2] += x * z;
-    cell->squares[3] += y * y, cell->squares[4] += y * z, cell->squares[5] += z * z;
+  clear();
+  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
+  if (!scan.empty()) {
+    add(scan.xyz.data()->data(), scan.size() - 1);
+    const Eigen::Vector4f last(scan.xyz.back().x(), scan.xyz.back().y(), scan.xyz.back().z(), 0.0f);
+    add(last.data(), 1);
   }
-
   SurfelCloud out;
   out.origin = scan.origin;
-  out.surfels.resize(cells_.size());
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
-    const Cell& c = cells_[i];
-    Surfel& s = out.surfels[i];
-    const float per_point = 1.0f / c.count;
-    const Eigen::Vector3f mean(c.sum[0] * per_point, c.sum[1] * per_point, c.sum[2] * per_point);
-    const Eigen::Vector3f centre(float(std::int32_t(c.key >> 42) - 1048576) + 0.5f,
-                                 float(std::int32_t((c.key >> 21) & 0x1fffff) - 1048576) + 0.5f,
-                                 float(std::int32_t(c.key & 0x1fffff) - 1048576) + 0.5f);
-    s.count = c.count;
-    s.mean = centre * voxel_m_ + mean;
-    s.covariance << c.squares[0] * per_point - mean.x() * mean.x(), c.squares[1] * per_point - mean.x() * mean.y(),
-        c.squares[2] * per_point - mean.x() * mean.z(), c.squares[3] * per_point - mean.y() * mean.y(),
-        c.squares[4] * per_point - mean.y() * mean.z(), c.squares[5] * per_point - mean.z() * mean.z();
-  }
+  out.surfels.reserve(used_.size());
+  for (const std::uint32_t slot : used_) out.surfels.push_back(surfel_of(table_[slot].sums, voxel_m_ * centre_of(table_[slot].key)));
   return out;
 }
 

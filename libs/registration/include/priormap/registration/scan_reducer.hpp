@@ -16,18 +16,19 @@ class ScanReducer {
   SurfelCloud reduce(const PointCloud& scan);
 
  private:
+  /// One cache line: sums of the points of a voxel, relative to its centre.
   struct alignas(64) Cell {
+    float sums[12];  // x, y, z, count, xx, xy, xz, yy, yz, zz, two unused
     std::uint64_t key;
-    float count;
-    float sum[3];      // relative to the voxel's centre
-    float squares[6];  // xx xy xz yy yz zz
   };
   Cell& cell_of(std::uint64_t key);
-  void grow();
+  Cell& add_cell(std::uint64_t key, std::size_t slot);
+  void add(const float* xyz, std::size_t count);
+  void clear();
 
   float voxel_m_;
-  std::vector<Cell> cells_;            // in order of first sight
-  std::vector<std::uint32_t> slots_;   // open addressing, index into cells_
+  std::vector<Cell> table_;          // open addressing
+  std::vector<std::uint32_t> used_;  // slots in order of first sight
 };
 
 /// Surfels merged by voxels of a coarser grid (means and covariances of all points behind them), in order of first sight.
