@@ -5,11 +5,9 @@
 #include <vector>
 
 #include <priormap/tessellation/polygon.hpp>
+#include <priormap/tessellation/roof.hpp>
 
 namespace priormap {
-
-/// Roof shapes of the OSM wiki's "Simple 3D buildings"; `other` is one that priormap does not build.
-enum class RoofShape : std::uint8_t { flat, gabled, hipped, half_hipped, pyramidal, skillion, gambrel, mansard, round, cone, dome, onion, other };
 
 /// What a source says about the shape of a building or of a part of one; absent where it says nothing.
 struct BuildingAttributes {

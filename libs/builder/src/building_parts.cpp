@@ -1,0 +1,73 @@
+#include <priormap/builder/building_parts.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <priormap/builder/bounds_index.hpp>
+
+namespace priormap {
+namespace {
+
+bool contains(const std::vector<Polygon2>& polygons, const Eigen::Vector2d& place) {
+  return std::ranges::any_of(polygons, [&](const Polygon2& polygon) { return priormap::contains(polygon, place); });
+}
+
+/// Places inside, evenly spread.
+std::vector<Eigen::Vector2d> places_inside(const ProjectedFootprint& footprint) {
+  double size = 0;
+  for (const Polygon2& polygon : footprint.polygons) size += area(polygon);
+  const double step = std::sqrt(size / 400);
+  const Bounds2& b = footprint.bounds;
+  std::vector<Eigen::Vector2d> places;
+  for (double y = b.min_y + 0.5 * step; y < b.max_y; y += step)
+    for (double x = b.min_x + 0.5 * step; x < b.max_x; x += step)
+      if (contains(footprint.polygons, {x, y})) places.emplace_back(x, y);
+  return places;
+}
+
+/// Tied by a relation, or by a relation not held apart.
+bool may_belong(const Footprint& part, const Footprint& outline) {
+  return part.building == Footprint::no_building || part.building == outline.building;
+}
+
+double share_inside(const std::vector<Eigen::Vector2d>& places, const std::vector<Polygon2>& polygons) {
+  if (places.empty()) return 0;
+  return static_cast<double>(std::ranges::count_if(places, [&](const auto& place) { return contains(polygons, place); })) / static_cast<double>(places.size());
+}
+
+}  // namespace
+
+PartAssignment assign_parts(std::span<const ProjectedFootprint> footprints) {
+  PartAssignment assignment{std::vector<bool>(footprints.size(), false), std::vector<std::uint32_t>(footprints.size(), PartAssignment::no_outline)};
+  BoundsIndex outlines;
+  for (std::uint32_t i = 0; i < footprints.size(); ++i)
+    if (footprints[i].footprint.kind == Footprint::Kind::outline && !footprints[i].polygons.empty()) outlines.add(footprints[i].bounds, i);
+  outlines.sort();
+
+  std::vector<std::vector<std::uint32_t>> parts_of(footprints.size());
+  for (std::uint32_t part = 0; part < footprints.size(); ++part) {
+    if (footprints[part].footprint.kind != Footprint::Kind::part || footprints[part].polygons.empty()) continue;
+    const std::vector<Eigen::Vector2d> places = places_inside(footprints[part]);
+    double best_share = 0.5;
+    for (const std::uint32_t outline : outlines.meeting(footprints[part].bounds)) {
+      if (!may_belong(footprints[part].footprint, footprints[outline].footprint)) continue;
+      const bool tied = footprints[part].footprint.building != Footprint::no_building;
+      const double share = tied ? 1 : share_inside(places, footprints[outline].polygons);
+      if (share < best_share) continue;
+      best_share = share;
+      assignment.outline_of[part] = outline;
+    }
+    if (assignment.outline_of[part] != PartAssignment::no_outline) parts_of[assignment.outline_of[part]].push_back(part);
+  }
+
+  for (std::uint32_t outline = 0; outline < footprints.size(); ++outline) {
+    if (parts_of[outline].empty()) continue;
+    std::vector<Polygon2> parts;
+    for (const std::uint32_t part : parts_of[outline])
+      parts.insert(parts.end(), footprints[part].polygons.begin(), footprints[part].polygons.end());
+    assignment.replaced[outline] = share_inside(places_inside(footprints[outline]), parts) >= filled_share;
+  }
+  return assignment;
+}
+
+}  // namespace priormap

@@ -1,0 +1,130 @@
+#include <priormap/builder/outline_prior.hpp>
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+
+#include <priormap/builder/prior_crs.hpp>
+#include <priormap/core/error.hpp>
+#include <priormap/core/hash.hpp>
+#include <priormap/prior/prior_writer.hpp>
+
+#include "outline_crs.hpp"
+#include "outline_stages.hpp"
+
+namespace priormap {
+namespace {
+
+/// Counts of what stands on the map, of one file.
+OutlineCounts count(const std::vector<Building>& buildings, const PartAssignment& parts, std::optional<std::uint16_t> file) {
+  OutlineCounts counts;
+  for (std::size_t i = 0; i < buildings.size(); ++i) {
+    const Building& building = buildings[i];
+    if (file && building.file != *file) continue;
+    counts.replaced += parts.replaced[i];
+    if (building.solids.empty()) continue;
+    ++(building.is_part ? counts.parts : counts.outlines);
+    ++counts.by_rule[static_cast<std::size_t>(building.rule)];
+  }
+  return counts;
+}
+
+std::vector<std::pair<std::string, std::string>> facts_of(const OutlineCounts& counts, const OutlineOptions& options) {
+  std::vector<std::pair<std::string, std::string>> facts{{"outlines", std::to_string(counts.outlines)},
+                                                         {"parts", std::to_string(counts.parts)},
+                                                         {"outlines_replaced_by_parts", std::to_string(counts.replaced)}};
+  for (int rule = 0; rule < num_height_rules; ++rule)
+    facts.emplace_back("heights_by_" + to_string(HeightRule(rule)), std::to_string(counts.by_rule[static_cast<std::size_t>(rule)]));
+  facts.emplace_back("faces", options.faces);
+  for (const auto& [name, file] : {std::pair{"terrain", options.terrain}, {"surface", options.heights_from}}) {
+    if (file.empty()) continue;
+    facts.emplace_back(name, std::filesystem::path(file).filename().string());
+    facts.emplace_back(std::string(name) + "_sha256", sha256_file(file));
+  }
+  if (options.ground_height_m) facts.emplace_back("ground_height_m", (std::ostringstream() << *options.ground_height_m).str());
+  return facts;
+}
+
+PriorSource source_of(const OutlineInput& input, std::size_t file, const OutlineFrames& frames, const PriorOptions& prior_options, const OutlineOptions& outline_options) {
+  PriorSource source;
+  source.id = input.kind + "-" + input.files[file].sha256.substr(0, 8);
+  source.kind = input.kind;
+  source.file_name = input.files[file].path.filename().string();
+  source.sha256 = input.files[file].sha256;
+  source.license = prior_options.license.empty() ? input.license : prior_options.license;
+  source.attribution = prior_options.attribution.empty() ? input.attribution : prior_options.attribution;
+  source.date = prior_options.date;
+  source.crs = frames.prior_from_outlines.source().name();
+  source.assumed_vertical = frames.assumed_vertical;
+  source.operation = frames.prior_from_outlines.operation();
+  source.sigma_m = outline_options.sigma_m;
+  return source;
+}
+
+PriorManifest manifest_of(const OutlineFrames& frames, const PriorOptions& options, const std::vector<PriorSource>& sources, const std::string& generator) {
+  PriorManifest manifest;
+  manifest.crs = frames.prior.name();
+  manifest.vertical = vertical_name(frames.prior);
+  manifest.tile_size = options.tile_size_m;
+  manifest.spacing_m = options.spacing_or(0.5);
+  manifest.sources = sources;
+  manifest.generator = generator;
+  return manifest;
+}
+
+}  // namespace
+
+std::vector<HashedFile> distinct_files(const std::vector<std::filesystem::path>& files) {
+  std::vector<HashedFile> hashed;
+  for (const std::filesystem::path& file : files) {
+    if (!std::filesystem::exists(file)) throw IoError(file, "no such file");
+    hashed.push_back({file, sha256_file(file)});
+  }
+  std::ranges::sort(hashed, [](const HashedFile& a, const HashedFile& b) { return std::tie(a.sha256, a.path) < std::tie(b.sha256, b.path); });
+  const auto repeated = std::ranges::unique(hashed, {}, &HashedFile::sha256);
+  hashed.erase(repeated.begin(), repeated.end());
+  return hashed;
+}
+
+OutlineReport build_outline_prior(OutlineInput input, const PriorOptions& prior_options, const OutlineOptions& outline_options,
+                                  const std::filesystem::path& output, Overwrite overwrite, const std::string& generator, Diagnostics diagnostics, int threads,
+                                  const Events& events) {
+  prior_options.validate();
+  outline_options.validate();
+  if (input.footprints.empty()) throw FormatError(input.files.front().path, "holds no building");
+  const OutlineFrames frames = resolve_outline_frames(input, prior_options, outline_options, events);
+  std::vector<PriorSource> sources;
+  for (std::size_t i = 0; i < input.files.size(); ++i) sources.push_back(source_of(input, i, frames, prior_options, outline_options));
+  PriorWriter writer(output, manifest_of(frames, prior_options, sources, generator), overwrite);
+
+  const std::vector<ProjectedFootprint> footprints = project_footprints(std::move(input.footprints), frames.prior_from_outlines, threads, diagnostics);
+  const PartAssignment parts = assign_parts(footprints);
+  std::vector<Building> buildings = raise_buildings(footprints, parts, frames, outline_options, threads, diagnostics);
+  for (Building& building : buildings) building.feature.source = sources[building.file].id;
+  for (std::size_t i = 0; i < sources.size(); ++i) sources[i].facts = facts_of(count(buildings, parts, static_cast<std::uint16_t>(i)), outline_options);
+  const OutlineCounts counts = count(buildings, parts, std::nullopt);
+  if (write_points(std::move(buildings), frames.prior, prior_options, outline_options, writer, threads, events) == 0)
+    throw FormatError(input.files.front().path, prior_options.bbox.empty() ? "none of its buildings could be built"
+                                                                           : "no building lies inside --bbox (W,S,E,N in " + prior_options.bbox_crs + ")");
+  writer.set_sources(sources);
+  return {writer.finish(threads, events), counts, std::move(diagnostics)};
+}
+
+std::string to_text(const OutlineReport& report) {
+  std::ostringstream text;
+  const auto line = [&](const std::string& name, const auto& value) { text << std::left << std::setw(28) << name << value << '\n'; };
+  line("outlines", report.counts.outlines);
+  line("parts", report.counts.parts);
+  line("outlines replaced by parts", report.counts.replaced);
+  for (int rule = 0; rule < num_height_rules; ++rule) line("heights by " + to_string(HeightRule(rule)), report.counts.by_rule[static_cast<std::size_t>(rule)]);
+  line("points", report.manifest.num_points);
+  line("tiles", report.manifest.num_tiles);
+  line("crs", report.manifest.crs);
+  line("vertical", report.manifest.vertical.value_or("null"));
+  for (const auto& [code, number] : report.diagnostics.counts()) line("diagnostic " + std::to_string(static_cast<int>(code)), number);
+  for (const Diagnostics::Entry& entry : report.diagnostics.entries())
+    text << "  " << static_cast<int>(entry.code) << ' ' << entry.feature << ": " << entry.message << '\n';
+  return text.str();
+}
+
+}  // namespace priormap

@@ -1,0 +1,64 @@
+#include <priormap/tessellation/normalize.hpp>
+
+#include "chunks.hpp"
+#include "outline_stages.hpp"
+
+namespace priormap {
+namespace {
+
+constexpr std::size_t chunk_size = 512;
+
+/// All rings of a stretch of footprints at once.
+void transform(std::span<Footprint> footprints, const Transformer& transformer) {
+  std::vector<Eigen::Vector3d> points;
+  for (const Footprint& footprint : footprints)
+    for (const Ring2& ring : footprint.rings)
+      for (const Eigen::Vector2d& p : ring) points.emplace_back(p.x(), p.y(), 0);
+  transformer.forward(points);
+  auto next = points.begin();
+  for (Footprint& footprint : footprints)
+    for (Ring2& ring : footprint.rings)
+      for (Eigen::Vector2d& p : ring) p = (next++)->head<2>();
+}
+
+bool is_finite(const std::vector<Ring2>& rings) {
+  for (const Ring2& ring : rings)
+    for (const Eigen::Vector2d& p : ring)
+      if (!p.allFinite()) return false;
+  return true;
+}
+
+ProjectedFootprint in_order(Footprint&& footprint, Diagnostics& diagnostics) {
+  ProjectedFootprint projected{{}, {}, {}};
+  if (is_finite(footprint.rings))
+    projected.polygons = normalize(footprint.rings, footprint.id, diagnostics);
+  else
+    diagnostics.add(DiagnosticCode::degenerate_geometry, footprint.id, "lies outside the domain of the prior's CRS; left out");
+  Ring2 corners;
+  for (const Polygon2& polygon : projected.polygons) {
+    const Bounds2 b = bounds_of(polygon.exterior);
+    corners.insert(corners.end(), {{b.min_x, b.min_y}, {b.max_x, b.max_y}});
+  }
+  projected.bounds = bounds_of(corners);
+  footprint.rings = {};
+  projected.footprint = std::move(footprint);
+  return projected;
+}
+
+}  // namespace
+
+std::vector<ProjectedFootprint> project_footprints(std::vector<Footprint> footprints, const Transformer& prior_from_outlines, int threads,
+                                                   Diagnostics& diagnostics) {
+  std::vector<ProjectedFootprint> projected(footprints.size());
+  std::vector<Diagnostics> of_chunk((footprints.size() + chunk_size - 1) / chunk_size);
+  for_each_chunk(
+      footprints.size(), chunk_size, threads, [&] { return prior_from_outlines; },
+      [&](const Transformer& transformer, std::size_t chunk, std::size_t begin, std::size_t end) {
+        transform(std::span(footprints).subspan(begin, end - begin), transformer);
+        for (std::size_t i = begin; i < end; ++i) projected[i] = in_order(std::move(footprints[i]), of_chunk[chunk]);
+      });
+  for (const Diagnostics& some : of_chunk) diagnostics.merge(some);
+  return projected;
+}
+
+}  // namespace priormap

@@ -1,0 +1,87 @@
+#include <priormap/builder/solid_index.hpp>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace priormap {
+namespace {
+
+constexpr double inset_m = 0.01;       // points on a face's edge are judged by the face beside them, not by what lies beyond it
+constexpr double tolerance_m = 0.002;  // the seam of a shared wall belongs to the lower building
+
+struct Extent {
+  Bounds2 plan;
+  double low_z, high_z;
+};
+
+Extent extent_of(const Ring3& ring) {
+  Extent extent{{ring[0].x(), ring[0].y(), ring[0].x(), ring[0].y()}, ring[0].z(), ring[0].z()};
+  for (const Eigen::Vector3d& p : ring) {
+    extent.plan = {std::min(extent.plan.min_x, p.x()), std::min(extent.plan.min_y, p.y()), std::max(extent.plan.max_x, p.x()), std::max(extent.plan.max_y, p.y())};
+    extent.low_z = std::min(extent.low_z, p.z());
+    extent.high_z = std::max(extent.high_z, p.z());
+  }
+  return extent;
+}
+
+bool side_of(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p) {
+  return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x()) > 0;
+}
+
+/// A segment that neither crosses a ring nor starts inside the polygon stays outside of it.
+bool comes_inside(const Polygon2& polygon, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  if (contains(polygon, a) || contains(polygon, b)) return true;
+  bool crosses = false;
+  for_each_ring(polygon, [&](const Ring2& ring) {
+    for_each_edge(ring, [&](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
+      crosses |= side_of(a, b, p) != side_of(a, b, q) && side_of(p, q, a) != side_of(p, q, b);
+    });
+  });
+  return crosses;
+}
+
+Eigen::Vector3d middle_of(const Ring3& ring) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : ring) sum += p - ring.front();
+  return ring.front() + sum / static_cast<double>(ring.size());
+}
+
+}  // namespace
+
+SolidIndex::SolidIndex(std::span<const BuildingSolid> solids) : solids_(solids) {
+  for (std::uint32_t i = 0; i < solids_.size(); ++i)
+    if (solids_[i].has_walls) index_.add(solids_[i].bounds, i);
+  index_.sort();
+}
+
+std::vector<std::uint32_t> SolidIndex::near(std::uint32_t solid) const {
+  std::vector<std::uint32_t> found = index_.meeting(grown(solids_[solid].bounds, touching_m));
+  std::erase(found, solid);
+  return found;
+}
+
+void SolidIndex::remove_hidden(const Face& face, const Eigen::Vector3d& normal, std::span<const std::uint32_t> candidates,
+                               std::vector<Eigen::Vector3d>& points) const {
+  const Ring3& exterior = face.polygon.exterior;
+  const Extent extent = extent_of(exterior);
+  const Eigen::Vector3d middle = middle_of(exterior), outward = touching_m * normal;
+  std::vector<const BuildingSolid*> covering;
+  for (const std::uint32_t i : candidates) {
+    const BuildingSolid& solid = solids_[i];
+    if (extent.low_z > solid.top_z + tolerance_m || !meet(grown(extent.plan, touching_m), solid.bounds)) continue;
+    if (face.surface_class == SurfaceClass::wall) {  // begins with the edge on the ground
+      const Eigen::Vector2d a = (exterior[0] + outward).head<2>(), b = (exterior[1] + outward).head<2>();
+      if (!comes_inside(solid.outline, a, b)) continue;
+    }
+    covering.push_back(&solid);
+  }
+  if (covering.empty()) return;
+  std::erase_if(points, [&](const Eigen::Vector3d& p) {
+    const Eigen::Vector3d to_middle = middle - p;
+    const double distance = to_middle.norm();
+    const Eigen::Vector3d probe = p + outward + (distance > inset_m ? Eigen::Vector3d(to_middle * (inset_m / distance)) : Eigen::Vector3d::Zero());
+    return std::ranges::any_of(covering, [&](const BuildingSolid* solid) { return solid->holds({probe.x(), probe.y(), p.z() + outward.z()}, tolerance_m); });
+  });
+}
+
+}  // namespace priormap

@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <iterator>
+#include <memory>
+
+#include <priormap/builder/bbox_filter.hpp>
+#include <priormap/builder/solid_index.hpp>
+#include <priormap/tessellation/sample.hpp>
+
+#include "chunks.hpp"
+#include "outline_stages.hpp"
+
+namespace priormap {
+namespace {
+
+constexpr std::size_t chunk_size = 64;
+constexpr std::size_t most_points_a_cloud = 200000;
+constexpr double farthest_from_origin_m = 2000;  // float32 stays within a quarter of a millimetre
+
+/// Neighbours one after the other: they fall into the same tiles and look at the same solids.
+std::vector<std::uint32_t> order_by_place(const std::vector<Building>& buildings) {
+  constexpr double block_m = 500;
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t i = 0; i < buildings.size(); ++i)
+    if (!buildings[i].solids.empty()) order.push_back(i);
+  const auto block = [&](std::uint32_t i) {
+    const Bounds2& b = buildings[i].solids.front().bounds;
+    return std::pair(std::floor(b.min_x / block_m), std::floor(b.min_y / block_m));
+  };
+  std::ranges::stable_sort(order, {}, block);
+  return order;
+}
+
+/// Collects points and hands them on in clouds of a good size. Positions are rounded to the prior's lattice before they become float32, so that they do
+/// not depend on which points share a cloud.
+class CloudBuffer {
+ public:
+  CloudBuffer(PriorWriter& writer, float sigma_m) : writer_(writer), sigma_m_(sigma_m) {}
+
+  void begin(std::uint16_t source, std::uint32_t feature) {
+    source_ = source;
+    feature_ = feature;
+  }
+
+  void add(const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
+    if (cloud_.empty() || cloud_.size() >= most_points_a_cloud || (position - cloud_.origin).cwiseAbs().maxCoeff() > farthest_from_origin_m) {
+      flush();
+      cloud_.origin = position.array().round();
+    }
+    const Eigen::Vector3d on_lattice = (position.array() * 1000).round() / 1000;
+    cloud_.xyz.push_back((on_lattice - cloud_.origin).cast<float>());
+    cloud_.normal.push_back(normal.cast<float>());
+    cloud_.classification.push_back(static_cast<std::uint8_t>(PointClass::building));
+    cloud_.sigma_m.push_back(sigma_m_);
+    cloud_.source.push_back(source_);
+    cloud_.feature.push_back(feature_);
+  }
+
+  void flush() {
+    if (!cloud_.empty()) writer_.add(cloud_);
+    cloud_.clear();
+  }
+
+ private:
+  PriorWriter& writer_;
+  float sigma_m_;
+  std::uint16_t source_ = 0;
+  std::uint32_t feature_ = 0;
+  PointCloud cloud_;
+};
+
+/// All solids of all buildings in one row, as the index wants them.
+struct SolidRow {
+  std::vector<BuildingSolid> solids;
+  std::vector<std::uint32_t> first_of;   ///< by building; one more at the end
+};
+
+/// One thread's way from a building to its points.
+class BuildingSampler {
+ public:
+  BuildingSampler(const SolidRow& row, const SolidIndex& index, const std::vector<Building>& buildings, const Crs& prior, const PriorOptions& prior_options,
+                  const OutlineOptions& outline_options, PriorWriter& writer)
+      : row_(row), index_(index), buildings_(buildings), bbox_(prior_options, prior), visible_only_(outline_options.visible_faces_only()),
+        writer_(writer), sampler_(prior_options.spacing_or(0.5)), buffer_(writer, static_cast<float>(outline_options.sigma_m)) {}
+
+  std::size_t sample(std::uint32_t building) {
+    bool known = false;
+    std::size_t num_points = 0;
+    for (std::uint32_t solid = row_.first_of[building]; solid < row_.first_of[building + 1]; ++solid) {
+      if (bbox_.outer() && !meet(*bbox_.outer(), row_.solids[solid].bounds)) continue;
+      const std::vector<std::uint32_t> neighbors = visible_only_ ? index_.near(solid) : std::vector<std::uint32_t>{};
+      for (const Face& face : row_.solids[solid].faces(!visible_only_)) {
+        points_.clear();
+        const Eigen::Vector3d normal = sampler_.sample(face.polygon, points_);
+        if (!neighbors.empty()) index_.remove_hidden(face, normal, neighbors, points_);
+        if (bbox_.is_active()) std::erase_if(points_, [&](const Eigen::Vector3d& p) { return !bbox_.contains(p.x(), p.y()); });
+        if (points_.empty()) continue;
+        if (!known) buffer_.begin(buildings_[building].file, writer_.add_feature(buildings_[building].feature));
+        known = true;
+        for (const Eigen::Vector3d& p : points_) buffer_.add(p, normal);
+        num_points += points_.size();
+      }
+    }
+    return num_points;
+  }
+  void flush() { buffer_.flush(); }
+
+ private:
+  const SolidRow& row_;
+  const SolidIndex& index_;
+  const std::vector<Building>& buildings_;
+  BboxFilter bbox_;
+  bool visible_only_;
+  PriorWriter& writer_;
+  FaceSampler sampler_;
+  CloudBuffer buffer_;
+  std::vector<Eigen::Vector3d> points_;
+};
+
+SolidRow solids_in_a_row(std::vector<Building>& buildings) {
+  SolidRow row;
+  for (Building& building : buildings) {
+    row.first_of.push_back(static_cast<std::uint32_t>(row.solids.size()));
+    std::ranges::move(building.solids, std::back_inserter(row.solids));
+    building.solids = {};
+  }
+  row.first_of.push_back(static_cast<std::uint32_t>(row.solids.size()));
+  return row;
+}
+
+}  // namespace
+
+std::size_t write_points(std::vector<Building> buildings, const Crs& prior, const PriorOptions& prior_options, const OutlineOptions& outline_options,
+                         PriorWriter& writer, int threads, const Events& events) {
+  const std::vector<std::uint32_t> order = order_by_place(buildings);
+  const SolidRow row = solids_in_a_row(buildings);
+  const SolidIndex index(row.solids);
+  std::atomic<std::size_t> num_points{0}, num_done{0};
+  for_each_chunk(
+      order.size(), chunk_size, threads,
+      [&] { return std::make_unique<BuildingSampler>(row, index, buildings, prior, prior_options, outline_options, writer); },
+      [&](auto& sampler, std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) num_points += sampler->sample(order[i]);
+        sampler->flush();
+        events.advance("sampling buildings", static_cast<double>(num_done += end - begin) / static_cast<double>(order.size()));
+      });
+  return num_points;
+}
+
+}  // namespace priormap

@@ -1,0 +1,228 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <priormap/builder/outline_prior.hpp>
+#include <priormap/core/error.hpp>
+#include <priormap/prior/prior_store.hpp>
+#include <priormap/sources/raster_writer.hpp>
+#include <random>
+
+namespace priormap {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OutlinePrior : public testing::Test {
+ protected:
+  OutlinePrior() : folder_(fs::path(testing::TempDir()) / (std::string("outline_prior_") + testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / "town.txt") << "stands for the file that the outlines came from";
+    options_.crs = "EPSG:25832";
+  }
+  ~OutlinePrior() override { fs::remove_all(folder_); }
+
+  static constexpr double east = 690000, north = 5340000;
+
+  static Footprint box(const std::string& id, double x, double y, double width, double depth) {
+    Footprint footprint;
+    footprint.id = id;
+    footprint.rings = {{{east + x, north + y}, {east + x + width, north + y}, {east + x + width, north + y + depth}, {east + x, north + y + depth}}};
+    return footprint;
+  }
+
+  OutlineReport build(std::vector<Footprint> footprints, const std::string& name = "prior", int threads = 2) {
+    OutlineInput input{std::move(footprints), {{folder_ / "town.txt", std::string(64, '0')}}, Crs::parse("EPSG:25832"), "footprints", "", ""};
+    return build_outline_prior(std::move(input), options_, outline_options_, folder_ / name, Overwrite::refuse, "test", {}, threads, events_);
+  }
+
+  std::vector<Eigen::Vector3d> points(const std::string& name = "prior") {
+    const PriorStore store(folder_ / name);
+    std::vector<Eigen::Vector3d> all;
+    for (const TileEntry& tile : store.tiles()) {
+      const PriorTile loaded = store.load(tile.key);
+      for (std::size_t i = 0; i < loaded.points.size(); ++i) all.push_back((loaded.points.position(i) * 1000).array().round());
+    }
+    std::ranges::sort(all, [](const auto& a, const auto& b) { return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end()); });
+    return all;
+  }
+
+  /// Ground: 500 m at x = 0, rising by `slope` to the east, with cells of 10 m and noise.
+  fs::path write_terrain(double slope, double noise_m) {
+    HeightGrid grid{east - 200, north + 300, 10, 60, 60, {}};
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise(0, noise_m);
+    for (std::size_t row = 0; row < grid.rows; ++row)
+      for (std::size_t column = 0; column < grid.columns; ++column)
+        grid.heights_m.push_back(static_cast<float>(500 + slope * (grid.cell_centre(column, row).x() - east) + (noise_m > 0 ? noise(random) : 0)));
+    write_geotiff(folder_ / "terrain.tif", grid, Crs::parse("EPSG:25832+7837"));
+    return folder_ / "terrain.tif";
+  }
+
+  fs::path folder_;
+  PriorOptions options_;
+  OutlineOptions outline_options_;
+  Events events_;
+};
+
+TEST_F(OutlinePrior, ABlockHasWallsAndARoof) {
+  const OutlineReport report = build({box("a", 0, 0, 10, 6)});
+  EXPECT_EQ(report.counts.outlines, 1u);
+  EXPECT_FALSE(report.manifest.vertical);
+  const auto all = points();
+  EXPECT_EQ(all.size(), 2 * (20 + 12) * 17u + 19 * 11) << "walls every half metre from 0 to 8 m, and what lies inside the roof's edge";
+  const PriorStore store(folder_ / "prior");
+  ASSERT_EQ(store.features().size(), 1u);
+  EXPECT_EQ(store.features()[0].id, "a");
+  EXPECT_EQ(store.features()[0].height_rule, "default");
+  const PriorTile tile = store.load(store.tiles()[0].key);
+  for (std::size_t i = 0; i < tile.points.size(); ++i) {
+    const Eigen::Vector3d p = tile.points.position(i) - Eigen::Vector3d(east + 5, north + 3, 4);
+    EXPECT_GT(tile.points.normal[i].cast<double>().dot(p), 0) << "normals look outward";
+    EXPECT_EQ(tile.points.classification[i], std::uint8_t(PointClass::building));
+    EXPECT_EQ(tile.points.sigma_m[i], 1);
+  }
+}
+
+TEST_F(OutlinePrior, WallsStartAtTheLowestGroundAndHeightsCountFromTheMedian) {
+  outline_options_.terrain = write_terrain(0.2, 0).string();
+  const OutlineReport report = build({box("a", 0, 0, 20, 20)});
+  EXPECT_EQ(report.manifest.vertical, "EPSG:7837") << "the terrain brings its heights along";
+  EXPECT_NEAR(report.manifest.min.z(), 500, 0.01);
+  EXPECT_NEAR(report.manifest.max.z(), 502 + 8, 0.3);
+}
+
+TEST_F(OutlinePrior, ANoisyTerrainDoesNotSinkTheRoofs) {
+  outline_options_.terrain = write_terrain(0, 2).string();
+  std::vector<Footprint> town;
+  for (int i = 0; i < 25; ++i) town.push_back(box("b" + std::to_string(i), 40.0 * (i % 5), 40.0 * (i / 5), 30, 30));
+  build(town);
+  double sum = 0;
+  for (const Feature& feature : PriorStore(folder_ / "prior").features()) sum += feature.ground_z;
+  EXPECT_NEAR(sum / 25, 500, 0.5) << "the lowest of a dozen noisy cells would lie some 2 m deeper";
+}
+
+TEST_F(OutlinePrior, OutsideTheTerrainBuildingsAreCountedUnlessAGroundHeightServes) {
+  outline_options_.terrain = write_terrain(0, 0).string();
+  const std::vector<Footprint> town{box("near", 0, 0, 20, 20), box("far", 5000, 0, 20, 20)};
+  EXPECT_EQ(build(town).diagnostics.counts().at(DiagnosticCode::outside_terrain), 1u);
+  outline_options_.ground_height_m = 490;
+  const OutlineReport served = build(town, "served");
+  EXPECT_EQ(served.diagnostics.total(), 0u);
+  EXPECT_EQ(served.manifest.min.z(), 490);
+}
+
+TEST_F(OutlinePrior, AssumedHeightsAreTransformed) {
+  options_.crs = "EPSG:25832+5773";
+  EXPECT_THROW(build({box("a", 0, 0, 20, 20)}), CrsError) << "heights of unknown datum where one is asked";
+  EXPECT_FALSE(fs::exists(folder_ / "prior"));
+  options_.assume_vertical = "EPSG:5773";
+  outline_options_.ground_height_m = 480;
+  EXPECT_EQ(build({box("a", 0, 0, 20, 20)}).manifest.min.z(), 480);
+}
+
+TEST_F(OutlinePrior, HeightsFromASurfaceModelIgnoreTheTreesOverIt) {
+  outline_options_.terrain = write_terrain(0, 0).string();
+  HeightGrid surface{east - 50, north + 150, 1, 200, 200, {}};
+  for (std::size_t row = 0; row < surface.rows; ++row)
+    for (std::size_t column = 0; column < surface.columns; ++column) {
+      const Eigen::Vector2d p = surface.cell_centre(column, row) - Eigen::Vector2d(east, north);
+      const bool roof = p.x() > 0 && p.x() < 20 && p.y() > 0 && p.y() < 10, tree = p.x() > 15 && p.x() < 25;
+      surface.heights_m.push_back(tree ? 528.f : roof ? 511.f : 500.f);
+    }
+  write_geotiff(folder_ / "dsm.tif", surface, Crs::parse("EPSG:25832+7837"));
+  outline_options_.heights_from = (folder_ / "dsm.tif").string();
+  Footprint tagged = box("tagged", 0, 40, 10, 10);
+  tagged.attributes.height_m = 5;
+  const OutlineReport report = build({box("a", 0, 0, 20, 10), tagged, box("bare", -40, 40, 10, 10)});
+  EXPECT_EQ(report.counts.by_rule, (std::array<std::size_t, 4>{1, 1, 0, 1})) << "no building shows where the surface is the ground";
+  EXPECT_NEAR(PriorStore(folder_ / "prior").features()[0].height_m, 11, 0.01);
+}
+
+TEST_F(OutlinePrior, ASurfaceNeedsAGround) {
+  outline_options_.heights_from = write_terrain(0, 0).string();
+  EXPECT_THROW(build({box("a", 0, 0, 20, 20)}), UsageError);
+}
+
+TEST_F(OutlinePrior, AllFacesIncludeFloorsAndSharedWalls) {
+  const std::vector<Footprint> row{box("a", 0, 0, 10, 10), box("b", 10, 0, 10, 10)};
+  build(row);
+  outline_options_.faces = "all";
+  build(row, "all");
+  const auto visible = points(), all = points("all");
+  std::vector<Eigen::Vector3d> missing;
+  const auto less = [](const auto& a, const auto& b) { return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end()); };
+  std::ranges::set_difference(visible, all, std::back_inserter(missing), less);
+  EXPECT_TRUE(missing.empty());
+  EXPECT_EQ(std::ranges::count_if(all, [](const auto& p) { return p.z() == 0; }), 41 * 21 + 21) << "both floors, the line under the shared wall twice";
+  EXPECT_GT(all.size(), visible.size() + 2 * 19 * 15);
+}
+
+std::vector<Footprint> random_town(int n) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> place(0, 600), size(4, 40), height(3, 30), unit(0, 1);
+  std::vector<Footprint> town;
+  for (int i = 0; i < n; ++i) {
+    Footprint footprint;
+    footprint.id = "b" + std::to_string(i);
+    const double x = 690000 + place(random), y = 5340000 + place(random), angle = 6 * unit(random), w = size(random), d = size(random);
+    for (const auto& [u, v] : {std::pair(0.0, 0.0), {w, 0.0}, {w, d}, {0.0, d}})
+      footprint.rings.resize(1), footprint.rings[0].emplace_back(x + u * std::cos(angle) - v * std::sin(angle), y + u * std::sin(angle) + v * std::cos(angle));
+    if (unit(random) < 0.5) footprint.attributes.height_m = height(random);
+    if (unit(random) < 0.5) footprint.attributes.roof_shape = RoofShape(static_cast<int>(12 * unit(random)));
+    town.push_back(std::move(footprint));
+  }
+  return town;
+}
+
+std::string bytes_of(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  std::ranges::sort(files);
+  std::string all;
+  for (const fs::path& file : files) {
+    std::ifstream in(file, std::ios::binary);
+    all += fs::relative(file, folder).string() + '\n' + std::string(std::istreambuf_iterator<char>(in), {});
+  }
+  return all;
+}
+
+TEST_F(OutlinePrior, SameBytesForAnyNumberOfThreadsAndAnyOrder) {
+  std::vector<Footprint> town = random_town(90);
+  build(town, "one", 1);
+  build(town, "three", 3);
+  std::ranges::reverse(town);
+  build(town, "reversed", 2);
+  EXPECT_EQ(bytes_of(folder_ / "one"), bytes_of(folder_ / "three"));
+  EXPECT_EQ(bytes_of(folder_ / "one"), bytes_of(folder_ / "reversed"));
+}
+
+TEST_F(OutlinePrior, BoxesShareNoPointAndLoseNone) {
+  const std::vector<Footprint> town = random_town(60);
+  build(town);
+  options_.bbox_crs = "EPSG:25832";
+  options_.bbox = {0, 0, east + 250, 1e7};
+  options_.tile_size_m = 50;
+  build(town, "west");
+  options_.bbox = {east + 250, 0, 1e6, 1e7};
+  options_.tile_size_m = 333;
+  build(town, "east");
+  std::vector<Eigen::Vector3d> both = points("west");
+  std::ranges::copy(points("east"), std::back_inserter(both));
+  std::ranges::sort(both, [](const auto& a, const auto& b) { return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end()); });
+  EXPECT_EQ(both, points());
+}
+
+TEST_F(OutlinePrior, NothingToBuildIsAnErrorAndLeavesNothing) {
+  EXPECT_THROW(build({}), FormatError);
+  EXPECT_THROW(build({box("a", 0, 0, 0, 5)}), FormatError);
+  options_.bbox = {0, 0, 1, 1};
+  EXPECT_THROW(build({box("a", 0, 0, 5, 5)}), FormatError);
+  EXPECT_FALSE(fs::exists(folder_ / "prior"));
+}
+
+}  // namespace
+}  // namespace priormap
