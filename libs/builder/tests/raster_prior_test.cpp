@@ -1,0 +1,204 @@
+#include <priormap/builder/raster_prior.hpp>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <tuple>
+
+#include <priormap/core/error.hpp>
+#include <priormap/prior/prior_store.hpp>
+
+#include "../../sources/tests/raster_fixture.hpp"
+
+namespace priormap {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RasterPriorTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "priormap_raster_prior_XXXXXX").string();
+    folder_ = ::mkdtemp(pattern.data());
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path write(const RasterFixture& fixture, const std::string& name) {
+    fixture.write(folder_ / name);
+    return folder_ / name;
+  }
+
+  fs::path build(const std::vector<fs::path>& inputs, const PriorOptions& options, const std::string& name, int threads = 2, const RasterPriorOptions& raster = {}) {
+    Events events;
+    events.warning = [&](const std::string& message) { warnings_.push_back(message); };
+    report_ = build_raster_prior(inputs, options, raster, folder_ / name, Overwrite::refuse, "test", threads, events);
+    return folder_ / name;
+  }
+
+  static PointCloud points_of(const fs::path& prior) {
+    const PriorStore store(prior);
+    PointCloud all;
+    for (const TileEntry& tile : store.tiles()) {
+      const PointCloud points = store.load(tile.key).points;
+      if (all.empty()) all.origin = points.origin;
+      all.append(points);
+    }
+    return all;
+  }
+
+  /// Path in the prior -> content.
+  static std::map<std::string, std::string> bytes_of(const fs::path& prior) {
+    std::map<std::string, std::string> bytes;
+    for (const auto& entry : fs::recursive_directory_iterator(prior)) {
+      if (!entry.is_regular_file()) continue;
+      std::ostringstream content;
+      content << std::ifstream(entry.path(), std::ios::binary).rdbuf();
+      bytes[entry.path().lexically_relative(prior).string()] = content.str();
+    }
+    return bytes;
+  }
+
+  static std::size_t count_sources(const PointCloud& points, std::uint16_t source) {
+    return static_cast<std::size_t>(std::count(points.source.begin(), points.source.end(), source));
+  }
+
+  fs::path folder_;
+  std::vector<std::string> warnings_;
+  RasterReport report_;
+};
+
+PriorOptions with_crs(const std::string& crs) {
+  PriorOptions options;
+  options.crs = crs;
+  return options;
+}
+
+RasterFixture hills(int width = 700, int height = 500) {
+  return {.width = width, .height = height, .transform = {691000, 1, 0, 5336000, 0, -1}, .crs = "EPSG:32632",
+          .value = [](double col, double row) { return 500 + 10 * std::sin(col * 0.02) + 5 * std::cos(row * 0.03); }};
+}
+
+TEST_F(RasterPriorTest, every_cell_is_a_point_with_class_source_and_sigma) {
+  const fs::path prior = build({write(hills(), "dem.tif")}, {}, "prior", 2, {.kind = "terrain", .sigma_m = 0.25});
+  const PointCloud points = points_of(prior);
+  ASSERT_EQ(points.size(), 350000u);
+  EXPECT_EQ(points.classification.front(), 2);
+  EXPECT_FLOAT_EQ(points.sigma_m.front(), 0.25f);
+  EXPECT_EQ(report_.manifest.crs, "EPSG:32632");
+  EXPECT_FALSE(report_.manifest.vertical);
+  EXPECT_EQ(warnings_.size(), 1u) << "heights are undeclared";
+  ASSERT_EQ(report_.manifest.sources.size(), 1u);
+  EXPECT_EQ(report_.manifest.sources[0].file_name, "dem.tif");
+}
+
+TEST_F(RasterPriorTest, the_bytes_do_not_depend_on_threads_or_order_of_inputs) {
+  const fs::path west = write(hills(), "west.tif");
+  RasterFixture shifted = hills();
+  shifted.transform[0] += 600;
+  const fs::path east = write(shifted, "east.tif");
+  const auto one = bytes_of(build({west, east}, {}, "one", 1)), two = bytes_of(build({east, west, east}, {}, "two", 3));
+  EXPECT_EQ(one, two);
+}
+
+TEST_F(RasterPriorTest, boxes_that_share_edges_share_out_the_points) {
+  const fs::path file = write(hills(), "dem.tif");
+  const auto count = [&](std::vector<double> bbox, const std::string& name) {
+    PriorOptions options;
+    options.bbox = std::move(bbox);
+    build({file}, options, name);
+    return report_.manifest.num_points;
+  };
+  // 11.57 E and 48.145 N cross the raster.
+  EXPECT_EQ(count({11, 48, 11.57, 49}, "west") + count({11.57, 48, 12, 49}, "east"), 350000u);
+}
+
+TEST_F(RasterPriorTest, a_box_changes_no_point_inside) {
+  const fs::path file = write(hills(), "dem.tif");
+  PriorOptions options;
+  options.bbox = {691100, 5335700, 691300, 5335900};
+  options.bbox_crs = "EPSG:32632";
+  const PointCloud part = points_of(build({file}, options, "part")), all = points_of(build({file}, {}, "all"));
+  std::map<std::tuple<double, double, double>, Eigen::Vector3f> by_position;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Eigen::Vector3d p = (all.position(i) * 1000).array().round();
+    by_position[{p.x(), p.y(), p.z()}] = all.normal[i];
+  }
+  ASSERT_EQ(part.size(), 40000u);
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const Eigen::Vector3d p = (part.position(i) * 1000).array().round();
+    const auto found = by_position.find({p.x(), p.y(), p.z()});
+    ASSERT_NE(found, by_position.end());
+    ASSERT_EQ(found->second, part.normal[i]);
+  }
+}
+
+TEST_F(RasterPriorTest, where_rasters_overlap_the_finer_has_the_word_except_in_its_holes) {
+  RasterFixture coarse{.width = 50, .height = 50, .transform = {691000, 2, 0, 5336000, 0, -2}, .value = [](double, double) { return 100; }};
+  RasterFixture fine{.width = 20, .height = 20, .transform = {691040, 1, 0, 5335960, 0, -1}, .no_data = -1,
+                     .value = [](double col, double row) { return col < 10 && row < 10 ? -1 : 200; }};
+  const PointCloud points = points_of(build({write(coarse, "coarse.tif"), write(fine, "fine.tif")}, {}, "prior"));
+  std::size_t high = 0, low_in_hole = 0, low_in_data = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d p = points.position(i) - Eigen::Vector3d(691040, 5335940, 0);
+    const bool in_fine = p.x() > 0 && p.x() < 20 && p.y() > 0 && p.y() < 20;
+    const bool in_hole = p.x() < 10 && p.y() > 10;
+    if (p.z() > 150) ++high;
+    else if (in_fine) ++(in_hole ? low_in_hole : low_in_data);
+  }
+  EXPECT_EQ(high, 300u);
+  EXPECT_EQ(low_in_data, 0u);
+  EXPECT_EQ(low_in_hole, 25u);
+  EXPECT_EQ(points.size(), 300u + 2500 - 100 + 25);
+}
+
+TEST_F(RasterPriorTest, declared_heights_are_transformed_and_the_operation_is_recorded) {
+  PriorOptions options = with_crs("EPSG:32632+5773");
+  options.source_crs = "EPSG:4979";
+  RasterFixture ellipsoidal{.transform = {11.57, 1e-5, 0, 48.15, 0, -1e-5}, .crs = "EPSG:4326", .value = [](double, double) { return 500; }};
+  const PointCloud points = points_of(build({write(ellipsoidal, "dem.tif")}, options, "prior"));
+  EXPECT_NEAR(points.position(0).z(), 454.456, 0.01) << "500 m above the ellipsoid near Munich, above EGM96";
+  EXPECT_EQ(report_.manifest.vertical, "EPSG:5773");
+  EXPECT_FALSE(report_.manifest.sources[0].operation.grids.empty());
+}
+
+TEST_F(RasterPriorTest, the_users_word_on_heights_is_recorded) {
+  PriorOptions options = with_crs("EPSG:32632+5773");
+  options.assume_vertical = "EPSG:5773";
+  build({write(hills(20, 20), "dem.tif")}, options, "prior");
+  EXPECT_EQ(report_.manifest.sources[0].assumed_vertical, "EPSG:5773");
+  EXPECT_TRUE(warnings_.empty());
+}
+
+TEST_F(RasterPriorTest, an_inaccurate_operation_is_warned_of) {
+  PriorOptions options;
+  options.source_crs = "EPSG:27700";
+  build({write({.transform = {532000, 1, 0, 182000, 0, -1}, .crs = ""}, "dem.tif")}, options, "prior");
+  ASSERT_EQ(warnings_.size(), 2u);
+  EXPECT_NE(warnings_[1].find("accurate to 2 m only; --crs EPSG:27700 avoids it"), std::string::npos) << warnings_[1];
+}
+
+TEST_F(RasterPriorTest, spacing_thins_or_densifies) {
+  PriorOptions options;
+  options.spacing_m = 5;
+  build({write(hills(100, 100), "dem.tif")}, options, "prior");
+  EXPECT_EQ(report_.manifest.num_points, 400u);
+  EXPECT_EQ(report_.manifest.spacing_m, 5);
+}
+
+TEST_F(RasterPriorTest, nothing_to_write_is_an_error_and_leaves_nothing) {
+  const fs::path file = write(hills(20, 20), "dem.tif");
+  PriorOptions options;
+  options.bbox = {7, 43, 8, 44};
+  EXPECT_THROW(build({file}, options, "prior"), FormatError);
+  RasterFixture empty = hills(20, 20);
+  empty.value = [](double, double) { return std::nan(""); };
+  EXPECT_THROW(build({write(empty, "empty.tif")}, {}, "prior"), FormatError);
+  for (const auto& entry : fs::directory_iterator(folder_)) EXPECT_TRUE(entry.path().extension() == ".tif") << entry.path();
+}
+
+}  // namespace
+}  // namespace priormap
