@@ -18,6 +18,7 @@ enum class DiagnosticCode : int {
   inner_ring_outside = 206,
   orientation_rings_same = 208,
   not_valid_2_manifold = 300,
+  polygon_wrong_orientation = 307,
   unresolved_reference = 701,   ///< a node, way, member or xlink that the file does not hold
   unusable_height = 702,        ///< a height or level tag that is no length or count
   outside_terrain = 703,        ///< no ground height known at the feature

@@ -1,0 +1,50 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <priormap/builder/prior_options.hpp>
+#include <priormap/core/atomic_output.hpp>
+#include <priormap/core/diagnostics.hpp>
+#include <priormap/core/events.hpp>
+#include <priormap/prior/prior_manifest.hpp>
+
+namespace priormap {
+
+/// How building models become points.
+struct ModelOptions {
+  int lod = 0;
+  std::string faces = "visible";
+  double sigma_m = 0.3;
+
+  template <class Visitor>
+  void describe(Visitor& visit) {
+    visit("lod", lod, {"only this level of detail; 0: of each building the highest", "", 0, 4});
+    visit("faces", faces, {"visible or all: visible leaves out walls that buildings share, undersides and floors"});
+    visit("sigma", sigma_m, {"standard deviation of the models' surfaces", "m", 0.001, 100});
+  }
+
+  bool visible_faces_only() const { return faces == "visible"; }
+  /// @throws UsageError for faces that are neither visible nor all.
+  void validate() const;
+};
+
+struct ModelReport {
+  PriorManifest manifest;
+  std::size_t buildings = 0;
+  std::size_t polygons = 0;
+  std::size_t terrain_models = 0;
+  Diagnostics diagnostics;
+};
+
+/// CityGML (.gml, .xml, .gz), CityJSON (.json) and CityJSONSeq (.jsonl) files to a prior. Files are streamed twice: first for the walls that
+/// buildings share (some 100 bytes a wall stay in memory), then for the points. srsName counts per building; where a CRS names latitude or northing
+/// first, coordinates are read so in the URN and URL forms of srsName, unless only the other order lies in reach of the CRS.
+/// @throws CrsError, FormatError, IoError, UsageError
+ModelReport build_model_prior(const std::vector<std::filesystem::path>& files, const PriorOptions& prior_options, const ModelOptions& model_options,
+                              const std::filesystem::path& output, Overwrite overwrite, const std::string& generator, int threads, const Events& events);
+
+/// Lines for stdout: counts, points, CRS, diagnostics.
+std::string to_text(const ModelReport& report);
+
+}  // namespace priormap

@@ -1,0 +1,101 @@
+#include "model_faces.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace priormap {
+namespace {
+
+constexpr double planarity_m = 0.01;   // val3dity's --planarity_d2p_tol
+
+/// Drops repeated points; false when fewer than three are left.
+bool clean(Ring3& ring, const std::string& feature, Diagnostics& diagnostics) {
+  const std::size_t before = ring.size();
+  ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+  while (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
+  if (ring.size() < before) diagnostics.add(DiagnosticCode::consecutive_points_same, feature, "repeated points");
+  if (ring.size() >= 3) return true;
+  diagnostics.add(DiagnosticCode::too_few_points, feature, std::to_string(ring.size()) + " points in a ring");
+  return false;
+}
+
+double deviation_from_plane(const Polygon3& polygon, const Eigen::Vector3d& normal) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : polygon.exterior) middle += p;
+  middle /= static_cast<double>(polygon.exterior.size());
+  double deviation = 0;
+  for_each_ring(polygon, [&](const Ring3& ring) {
+    for (const Eigen::Vector3d& p : ring) deviation = std::max(deviation, std::abs(normal.dot(p - middle)));
+  });
+  return deviation;
+}
+
+SurfaceClass class_by_slope(const Eigen::Vector3d& normal) {
+  return normal.z() > 0.3 ? SurfaceClass::roof : normal.z() < -0.3 ? SurfaceClass::ground_surface : SurfaceClass::wall;
+}
+
+void turn_over(ModelFace& face) {
+  for_each_ring(face.polygon, [](Ring3& ring) { std::reverse(ring.begin(), ring.end()); });
+  face.normal = -face.normal;
+}
+
+}  // namespace
+
+std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diagnostics) {
+  std::vector<ModelFace> faces;
+  faces.reserve(model.polygons.size());
+  for (const ModelPolygon& stated : model.polygons) {
+    if (!stated.closed) diagnostics.add(DiagnosticCode::ring_not_closed, model.id, "a ring does not repeat its first point");
+    ModelFace face{stated.polygon, Eigen::Vector3d::Zero(), stated.surface_class};
+    if (!clean(face.polygon.exterior, model.id, diagnostics)) continue;
+    std::erase_if(face.polygon.holes, [&](Ring3& hole) { return !clean(hole, model.id, diagnostics); });
+    const Eigen::Vector3d twice_area = newell_normal(face.polygon);
+    if (!(twice_area.norm() > 1e-6)) {
+      diagnostics.add(DiagnosticCode::degenerate_geometry, model.id, "a polygon without area");
+      continue;
+    }
+    face.normal = twice_area.normalized();
+    const double deviation = deviation_from_plane(face.polygon, face.normal);
+    face.planar = deviation <= planarity_m;
+    if (!face.planar) diagnostics.add(DiagnosticCode::non_planar_polygon, model.id, std::to_string(deviation) + " m from its plane");
+    const bool looks_up_by_kind = face.surface_class == SurfaceClass::roof || face.surface_class == SurfaceClass::terrain;
+    if (looks_up_by_kind && face.normal.z() < -0.1) {
+      diagnostics.add(DiagnosticCode::polygon_wrong_orientation, model.id, "a roof that looks down");
+      turn_over(face);
+    }
+    if (face.surface_class == SurfaceClass::unclassified) face.surface_class = class_by_slope(face.normal);
+    faces.push_back(std::move(face));
+  }
+  return faces;
+}
+
+bool can_be_seen(const ModelFace& face) {
+  switch (face.surface_class) {
+    case SurfaceClass::ground_surface: case SurfaceClass::outer_floor: case SurfaceClass::outer_ceiling: case SurfaceClass::closure: return false;
+    case SurfaceClass::terrain: return true;
+    default: return face.normal.z() > -0.7;
+  }
+}
+
+std::vector<std::vector<std::vector<Eigen::Vector2d>>> footprint_of(const std::vector<ModelFace>& faces) {
+  const auto outlines_of = [&](SurfaceClass surface_class) {
+    std::vector<std::vector<std::vector<Eigen::Vector2d>>> outlines;
+    for (const ModelFace& face : faces) {
+      if (face.surface_class != surface_class || std::abs(face.normal.z()) < 0.1) continue;
+      std::vector<std::vector<Eigen::Vector2d>> rings;
+      for_each_ring(face.polygon, [&](const Ring3& ring) {
+        std::vector<Eigen::Vector2d>& flat = rings.emplace_back();
+        for (const Eigen::Vector3d& p : ring) flat.push_back(p.head<2>());
+        const bool clockwise_from_above = face.normal.z() < 0;
+        if (clockwise_from_above) std::reverse(flat.begin(), flat.end());
+      });
+      outlines.push_back(std::move(rings));
+    }
+    return outlines;
+  };
+  auto outlines = outlines_of(SurfaceClass::ground_surface);
+  return outlines.empty() ? outlines_of(SurfaceClass::roof) : outlines;
+}
+
+}  // namespace priormap

@@ -1,0 +1,27 @@
+#pragma once
+#include <vector>
+
+#include <priormap/core/diagnostics.hpp>
+#include <priormap/sources/building_model.hpp>
+
+namespace priormap {
+
+/// One polygon of a model, cleaned, with what it is and which way it looks.
+struct ModelFace {
+  Polygon3 polygon;
+  Eigen::Vector3d normal;   ///< unit, outward
+  SurfaceClass surface_class;
+  bool planar = true;       ///< within 1 cm (val3dity's default)
+};
+
+/// The faces of a model in metres. Defects are counted by val3dity's codes; polygons without area are left out. Faces that the
+/// file leaves unnamed are walls, roofs or ground surfaces by their slope; roofs that look down are turned over.
+std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diagnostics);
+
+/// False for what no beam from the street reaches: ground, floors, other undersides, and closures, which are not there.
+bool can_be_seen(const ModelFace& face);
+
+/// Outline of a model as the features file wants it: its lowest-class faces (ground surfaces, else roofs) seen from above.
+std::vector<std::vector<std::vector<Eigen::Vector2d>>> footprint_of(const std::vector<ModelFace>& faces);
+
+}  // namespace priormap

@@ -1,0 +1,96 @@
+#include "model_frame.hpp"
+
+#include <cmath>
+
+#include <priormap/core/error.hpp>
+
+namespace priormap {
+namespace {
+
+/// Names without an authority that building models are known to carry.
+const std::map<std::string, std::string> bare_names = {
+    {"CH1903", "EPSG:21781"}, {"CH1903+", "EPSG:2056"}, {"RD", "EPSG:28992"}, {"ETRS89_UTM32", "EPSG:25832"}, {"ETRS89_UTM33", "EPSG:25833"},
+};
+
+std::optional<Crs> declared_crs(const std::string& srs_name, const std::string& file, bool overridden) {
+  if (srs_name.empty()) return std::nullopt;
+  const auto bare = bare_names.find(srs_name);
+  try {
+    return Crs::parse(bare == bare_names.end() ? srs_name : bare->second);
+  } catch (const CrsError& error) {
+    if (overridden) return std::nullopt;
+    throw CrsError(file + ": srsName '" + srs_name + "': " + error.what() + "; name the CRS with --source-crs");
+  }
+}
+
+Eigen::Vector3d first_point(const BuildingModel& model, const std::string& file) {
+  for (const ModelPolygon& polygon : model.polygons) {
+    if (!polygon.polygon.exterior.empty()) return polygon.polygon.exterior.front();
+  }
+  throw FormatError(file, model.id + " has no coordinates that are numbers");
+}
+
+Eigen::Vector3d swapped(const Eigen::Vector3d& p) { return {p.y(), p.x(), p.z()}; }
+
+/// Longitude and latitude of a place; nothing where the CRS does not reach it, found by the way there and back.
+std::optional<GeoPoint> reach(const Crs& crs, const Eigen::Vector3d& place) {
+  if (crs.is_geographic()) {
+    if (std::abs(place.x()) > 180 || std::abs(place.y()) > 90) return std::nullopt;
+    return GeoPoint{place.y(), place.x(), 0};
+  }
+  const Crs geographic = crs.geographic_base();
+  const Transformer to_geographic(crs.horizontal(), geographic);
+  const Eigen::Vector3d lon_lat = to_geographic.forward({place.x(), place.y(), 0});
+  const Eigen::Vector3d back = to_geographic.inverse(lon_lat);
+  if (!lon_lat.allFinite() || !back.allFinite() || (back - place).head<2>().norm() > 1) return std::nullopt;
+  return GeoPoint{lon_lat.y(), lon_lat.x(), 0};
+}
+
+/// Data in GML may follow the authority's axis order: the URN and URL forms say so. Files that name a projected CRS that way and still write
+/// the easting first are common: then the order in reach of the CRS counts.
+bool northing_comes_first(const std::string& srs_name, const Crs& crs, const Eigen::Vector3d& place) {
+  if (!crs.authority_north_first()) return false;
+  const bool by_name = srs_name.starts_with("urn:ogc:") || srs_name.starts_with("http");
+  const bool straight = reach(crs.horizontal(), place).has_value(), turned = reach(crs.horizontal(), swapped(place)).has_value();
+  if (straight != turned) return turned;
+  return by_name;
+}
+
+}  // namespace
+
+ModelFrames::ModelFrames(const PriorOptions& options, const BuildingModel& first, const std::string& file, const Events& events) : options_(options) {
+  const InputCrs input = resolve_input_crs(options, declared_crs(first.srs_name, file, !options.source_crs.empty()), file);
+  Eigen::Vector3d place = first_point(first, file);
+  if (options.source_crs.empty() && northing_comes_first(first.srs_name, input.crs, place)) place = swapped(place);
+  const std::optional<GeoPoint> middle = reach(input.crs.horizontal(), place);
+  if (!middle) throw CrsError(file + ": its coordinates lie out of reach of " + input.crs.human_name() + "; name their CRS with --source-crs");
+  prior_ = resolve_prior_crs(options, {input}, *middle, events);
+}
+
+ModelFrames::Frame& ModelFrames::frame_of(const BuildingModel& model, const std::string& file) {
+  if (const auto known = frames_.find(model.srs_name); known != frames_.end()) return known->second;
+  const InputCrs input = resolve_input_crs(options_, declared_crs(model.srs_name, file, !options_.source_crs.empty()), file);
+  Frame frame{options_.source_crs.empty() && northing_comes_first(model.srs_name, input.crs, first_point(model, file)), std::nullopt,
+              {input.crs.name(), input.assumed_vertical, {}}};
+  Transformer transformer(input.crs, *prior_);
+  frame.source.operation = transformer.operation();
+  if (!transformer.is_identity()) frame.to_prior = std::move(transformer);
+  return frames_.emplace(model.srs_name, std::move(frame)).first->second;
+}
+
+void ModelFrames::to_prior(BuildingModel& model, const std::string& file) {
+  const Frame& frame = frame_of(model, file);
+  for (ModelPolygon& polygon : model.polygons) {
+    bool good = true;
+    for_each_ring(polygon.polygon, [&](Ring3& ring) {
+      if (frame.swap_axes) {
+        for (Eigen::Vector3d& p : ring) p = swapped(p);
+      }
+      if (frame.to_prior) frame.to_prior->forward(ring);
+      for (const Eigen::Vector3d& p : ring) good = good && p.allFinite();
+    });
+    if (!good) polygon.polygon = {};
+  }
+}
+
+}  // namespace priormap

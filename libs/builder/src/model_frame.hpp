@@ -1,0 +1,43 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+
+#include <priormap/builder/prior_crs.hpp>
+#include <priormap/geodesy/transformer.hpp>
+#include <priormap/sources/building_model.hpp>
+
+namespace priormap {
+
+/// What the manifest says of the coordinates of one file.
+struct ModelSourceFrame {
+  std::string crs_name;
+  std::string assumed_vertical;
+  CoordinateOperation operation;
+};
+
+/// The way from each srsName to the prior's CRS, which the first building decides where the user does not. Not thread-safe.
+class ModelFrames {
+ public:
+  /// @throws CrsError when the building's srsName is missing or unknown and --source-crs does not help.
+  ModelFrames(const PriorOptions& options, const BuildingModel& first, const std::string& file, const Events& events);
+
+  const Crs& prior() const { return *prior_; }
+  /// Turns axes and coordinates of a building into the prior's, in place. Polygons with a point outside the operation's reach are emptied.
+  void to_prior(BuildingModel& model, const std::string& file);
+  ModelSourceFrame source(const BuildingModel& model, const std::string& file) { return frame_of(model, file).source; }
+
+ private:
+  struct Frame {
+    bool swap_axes;
+    std::optional<Transformer> to_prior;   ///< none: the same CRS
+    ModelSourceFrame source;
+  };
+  Frame& frame_of(const BuildingModel& model, const std::string& file);
+
+  const PriorOptions& options_;
+  std::optional<Crs> prior_;
+  std::map<std::string, Frame> frames_;   ///< by srsName
+};
+
+}  // namespace priormap

@@ -1,0 +1,281 @@
+#include <priormap/builder/model_prior.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <iomanip>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <sstream>
+
+#include <priormap/builder/bbox_filter.hpp>
+#include <priormap/builder/outline_prior.hpp>
+#include <priormap/builder/prior_crs.hpp>
+#include <priormap/core/error.hpp>
+#include <priormap/prior/prior_writer.hpp>
+#include <priormap/sources/citygml_reader.hpp>
+#include <priormap/sources/cityjson_reader.hpp>
+#include <priormap/tessellation/sample.hpp>
+#include <priormap/tessellation/triangulate.hpp>
+
+#include "chunks.hpp"
+#include "cloud_buffer.hpp"
+#include "model_faces.hpp"
+#include "model_frame.hpp"
+#include "wall_index.hpp"
+
+namespace priormap {
+namespace {
+
+constexpr std::size_t batch_size = 512;   // buildings in memory at a time
+
+void read_models(const std::filesystem::path& file, const BuildingModelOptions& options, const BuildingModelSink& sink) {
+  const std::string extension = file.extension();
+  if (extension == ".json" || extension == ".jsonl" || extension == ".ndjson") return read_cityjson(file, cityjson_layout(file), options, sink);
+  read_citygml(file, options, sink);
+}
+
+BuildingModelOptions reader_options(const ModelOptions& options) {
+  return {options.lod > 0 ? std::optional(options.lod) : std::nullopt};
+}
+
+/// First pass: the CRS of the prior from the first building, and the walls of all.
+class Survey {
+ public:
+  Survey(const PriorOptions& prior_options, const ModelOptions& model_options, const Events& events)
+      : prior_options_(prior_options), model_options_(model_options), events_(events) {}
+
+  void read(const HashedFile& file) {
+    read_models(file.path, reader_options(model_options_), [&](BuildingModel&& model) {
+      if (model.polygons.empty()) return;
+      if (!frames_) frames_ = std::make_unique<ModelFrames>(prior_options_, model, file.path.string(), events_);
+      file_frame_.try_emplace(file.path.string(), frames_->source(model, file.path.string()));
+      if (!model_options_.visible_faces_only()) return;
+      frames_->to_prior(model, file.path.string());
+      Diagnostics ignored;
+      for (const ModelFace& face : model_faces(model, ignored)) {
+        if (face.surface_class != SurfaceClass::closure) walls_.add(face.polygon, face.normal);
+      }
+    });
+  }
+
+  const WallIndex& walls() const { return walls_; }
+  ModelFrames* frames() { return frames_.get(); }
+  const ModelSourceFrame* frame_of(const HashedFile& file) const {
+    const auto found = file_frame_.find(file.path.string());
+    return found == file_frame_.end() ? nullptr : &found->second;
+  }
+
+ private:
+  const PriorOptions& prior_options_;
+  const ModelOptions& model_options_;
+  const Events& events_;
+  std::unique_ptr<ModelFrames> frames_;
+  std::map<std::string, ModelSourceFrame> file_frame_;
+  WallIndex walls_;
+};
+
+/// One thread's way from a building in the prior's CRS to its points.
+class ModelSampler {
+ public:
+  ModelSampler(const WallIndex& walls, const Crs& prior, const PriorOptions& prior_options, const ModelOptions& model_options, PriorWriter& writer)
+      : walls_(walls), bbox_(prior_options, prior), visible_only_(model_options.visible_faces_only()), sigma_m_(model_options.sigma_m), writer_(writer),
+        sampler_(prior_options.spacing_or(0.5)), buffer_(writer, static_cast<float>(model_options.sigma_m)) {}
+
+  /// @return whether a point of it lies inside the box
+  bool sample(const BuildingModel& model, const std::string& source_id, std::uint16_t source, Diagnostics& diagnostics) {
+    const std::vector<ModelFace> faces = model_faces(model, diagnostics);
+    std::optional<std::uint32_t> feature;
+    for (const ModelFace& face : faces) {
+      if (visible_only_ && !can_be_seen(face)) continue;
+      points_.clear();
+      normals_.clear();
+      if (face.planar) {
+        sampler_.sample(face.polygon, points_);
+        normals_.assign(points_.size(), face.normal);
+      } else {
+        sampler_.sample(triangulate(face.polygon), points_, normals_);
+      }
+      if (visible_only_ && face.planar) {
+        walls_.remove_shared(face.normal, points_);
+        normals_.resize(points_.size());
+      }
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        if (bbox_.is_active() && !bbox_.contains(points_[i].x(), points_[i].y())) continue;
+        if (!feature) {
+          feature = model.terrain ? PointCloud::no_feature : writer_.add_feature(feature_of(model, faces, source_id));
+          buffer_.begin(source, *feature, model.terrain ? PointClass::ground : PointClass::building);
+        }
+        buffer_.add(points_[i], normals_[i]);
+      }
+    }
+    return feature.has_value();
+  }
+  void flush() { buffer_.flush(); }
+
+ private:
+  Feature feature_of(const BuildingModel& model, const std::vector<ModelFace>& faces, const std::string& source_id) const {
+    Feature feature;
+    feature.source = source_id;
+    feature.id = model.id;
+    feature.height_rule = "model";
+    feature.sigma_m = sigma_m_;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const ModelFace& face : faces) {
+      for (const Eigen::Vector3d& p : face.polygon.exterior) {
+        low = std::min(low, p.z());
+        high = std::max(high, p.z());
+      }
+    }
+    feature.ground_z = low;
+    feature.height_m = high - low;
+    feature.outline = footprint_of(faces);
+    return feature;
+  }
+
+  const WallIndex& walls_;
+  BboxFilter bbox_;
+  bool visible_only_;
+  double sigma_m_;
+  PriorWriter& writer_;
+  FaceSampler sampler_;
+  CloudBuffer buffer_;
+  std::vector<Eigen::Vector3d> points_, normals_;
+};
+
+/// Second pass: buildings in batches, each batch sampled by all threads.
+class Sampling {
+ public:
+  Sampling(const Survey& survey, ModelFrames& frames, const PriorOptions& prior_options, const ModelOptions& model_options, PriorWriter& writer, int threads)
+      : survey_(survey), frames_(frames), prior_options_(prior_options), model_options_(model_options), writer_(writer), threads_(threads) {}
+
+  void read(const HashedFile& file, const std::string& source_id, std::uint16_t source, ModelReport& report) {
+    const auto finish_batch = [&] {
+      std::mutex mutex;
+      std::vector<Diagnostics> diagnostics(batch_.size());
+      std::atomic<std::size_t> buildings{0}, terrain{0};
+      for_each_chunk(
+          batch_.size(), 16, threads_,
+          [&] { return std::make_unique<ModelSampler>(survey_.walls(), frames_.prior(), prior_options_, model_options_, writer_); },
+          [&](auto& sampler, std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+              if (sampler->sample(batch_[i], source_id, source, diagnostics[i])) ++(batch_[i].terrain ? terrain : buildings);
+            }
+            sampler->flush();
+          });
+      for (const Diagnostics& of_building : diagnostics) report.diagnostics.merge(of_building);
+      report.buildings += buildings;
+      report.terrain_models += terrain;
+      batch_.clear();
+    };
+    read_models(file.path, reader_options(model_options_), [&](BuildingModel&& model) {
+      if (model.unresolved_references > 0) {
+        report.diagnostics.add(DiagnosticCode::unresolved_reference, model.id,
+                               std::to_string(model.unresolved_references) + " references to what the file does not hold");
+      }
+      if (model.polygons.empty()) return;
+      report.polygons += model.polygons.size();
+      frames_.to_prior(model, file.path.string());
+      batch_.push_back(std::move(model));
+      if (batch_.size() == batch_size) finish_batch();
+    });
+    finish_batch();
+  }
+
+ private:
+  const Survey& survey_;
+  ModelFrames& frames_;
+  const PriorOptions& prior_options_;
+  const ModelOptions& model_options_;
+  PriorWriter& writer_;
+  int threads_;
+  std::vector<BuildingModel> batch_;
+};
+
+PriorSource source_of(const HashedFile& file, const ModelSourceFrame& frame, const PriorOptions& prior_options, const ModelOptions& model_options) {
+  PriorSource source;
+  const std::string extension = file.path.extension();
+  source.kind = extension == ".json" || extension == ".jsonl" || extension == ".ndjson" ? "cityjson" : "citygml";
+  source.id = source.kind + "-" + file.sha256.substr(0, 8);
+  source.file_name = file.path.filename().string();
+  source.sha256 = file.sha256;
+  source.license = prior_options.license;
+  source.attribution = prior_options.attribution;
+  source.date = prior_options.date;
+  source.crs = frame.crs_name;
+  source.assumed_vertical = frame.assumed_vertical;
+  source.operation = frame.operation;
+  source.sigma_m = model_options.sigma_m;
+  source.facts = {{"faces", model_options.faces}};
+  if (model_options.lod > 0) source.facts.emplace_back("lod", std::to_string(model_options.lod));
+  return source;
+}
+
+}  // namespace
+
+void ModelOptions::validate() const {
+  if (faces != "visible" && faces != "all") throw UsageError("--faces must be visible or all, not '" + faces + "'");
+}
+
+ModelReport build_model_prior(const std::vector<std::filesystem::path>& inputs, const PriorOptions& prior_options, const ModelOptions& model_options,
+                              const std::filesystem::path& output, Overwrite overwrite, const std::string& generator, int threads, const Events& events) {
+  prior_options.validate();
+  model_options.validate();
+  const std::vector<HashedFile> files = distinct_files(inputs);
+  Survey survey(prior_options, model_options, events);
+  for (const HashedFile& file : files) survey.read(file);
+  if (!survey.frames()) throw FormatError(files.front().path, "holds no building with surfaces" + (model_options.lod > 0 ? " of LoD" + std::to_string(model_options.lod) : std::string()));
+
+  PriorManifest manifest;
+  manifest.crs = survey.frames()->prior().name();
+  manifest.vertical = vertical_name(survey.frames()->prior());
+  manifest.tile_size = prior_options.tile_size_m;
+  manifest.spacing_m = prior_options.spacing_or(0.5);
+  manifest.generator = generator;
+  std::vector<const HashedFile*> with_models;
+  for (const HashedFile& file : files) {
+    const ModelSourceFrame* frame = survey.frame_of(file);
+    if (!frame) {
+      events.warn(file.path.string() + ": holds no building with surfaces");
+      continue;
+    }
+    manifest.sources.push_back(source_of(file, *frame, prior_options, model_options));
+    with_models.push_back(&file);
+  }
+  PriorWriter writer(output, manifest, overwrite);
+
+  ModelReport report;
+  Sampling sampling(survey, *survey.frames(), prior_options, model_options, writer, threads);
+  for (std::size_t i = 0; i < with_models.size(); ++i) {
+    const std::size_t before = report.buildings;
+    sampling.read(*with_models[i], manifest.sources[i].id, static_cast<std::uint16_t>(i), report);
+    manifest.sources[i].facts.emplace_back("buildings", std::to_string(report.buildings - before));
+  }
+  if (report.buildings + report.terrain_models == 0) {
+    throw FormatError(files.front().path, prior_options.bbox.empty() ? "none of its buildings could be built"
+                                                                     : "no building lies inside --bbox (W,S,E,N in " + prior_options.bbox_crs + ")");
+  }
+  writer.set_sources(manifest.sources);
+  report.manifest = writer.finish(threads, events);
+  return report;
+}
+
+std::string to_text(const ModelReport& report) {
+  std::ostringstream text;
+  const auto line = [&](const std::string& name, const auto& value) { text << std::left << std::setw(28) << name << value << '\n'; };
+  line("buildings", report.buildings);
+  line("polygons", report.polygons);
+  line("terrain models", report.terrain_models);
+  line("points", report.manifest.num_points);
+  line("tiles", report.manifest.num_tiles);
+  line("crs", report.manifest.crs);
+  line("vertical", report.manifest.vertical.value_or("null"));
+  for (const auto& [code, number] : report.diagnostics.counts()) line("diagnostic " + std::to_string(static_cast<int>(code)), number);
+  for (const Diagnostics::Entry& entry : report.diagnostics.entries()) {
+    text << "  " << static_cast<int>(entry.code) << ' ' << entry.feature << ": " << entry.message << '\n';
+  }
+  return text.str();
+}
+
+}  // namespace priormap
