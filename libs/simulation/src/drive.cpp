@@ -67,11 +67,13 @@ void write_trajectory(const fs::path& file, const DrivePath& path, const MapFram
   write_text(file, text);
 }
 
-void write_kitti_poses(const fs::path& file, const DrivePath& path) {
+void write_kitti_poses(const fs::path& file, const DrivePath& path, const MapFrame& town_frame, const MapFrame& map) {
   std::string text;
-  for (const Eigen::Isometry3d& pose : path.poses)
+  for (const Eigen::Isometry3d& pose : path.poses) {
+    const Eigen::Isometry3d T_map_sensor = map.pose_to_map(town_frame.pose_to_projected(pose));
     for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 4; ++c) text += format("%.9e", pose(r, c)) + (r == 2 && c == 3 ? '\n' : ' ');
+      for (int c = 0; c < 4; ++c) text += format("%.9e", T_map_sensor(r, c)) + (r == 2 && c == 3 ? '\n' : ' ');
+  }
   write_text(file, text);
 }
 
@@ -197,6 +199,8 @@ DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output,
   const Town town = build_town(plan, options);
   const std::vector<BuildingError> errors = draw_errors(town, plan.town.driven, options.errors, options.seed);
   const DrivePath path = ride(plan.track, town.terrain, options.platform, options.seed);
+  // The town's frame lies under the first wheel track; the frame `map` of the outputs at the first sensor pose, some centimetres off when it tilts.
+  const MapFrame map = MapFrame::at(plan.frame.projected(), plan.frame.to_projected(path.poses.front().translation()));
   events.inform(format("%zu buildings, %zu trees, %zu parked cars along %.0f m of drive", town.buildings.size(), town.trees.size(),
                        town.parked_cars.size(), length(plan.town.driven)));
   const World world = build_world(town, options.seed);
@@ -207,9 +211,9 @@ DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output,
   write_geotiff(root / "sources" / "dtm.tif", terrain_model(town, plan.town.driven, plan.frame, options.errors, options.seed), crs);
   write_times(root / "times.txt", path);
   write_trajectory(root / "truth" / "trajectory.csv", path, plan.frame);
-  write_kitti_poses(root / "truth" / "poses_kitti.txt", path);
+  write_kitti_poses(root / "truth" / "poses_kitti.txt", path, plan.frame, map);
   write_initial_pose(root / "truth" / "initial_pose.txt", path, plan.frame, options);
-  write_frame(root / "truth" / "frame.json", plan.frame, options);
+  write_frame(root / "truth" / "frame.json", map, options);
   write_building_errors(root / "truth" / "buildings.csv", town, errors);
 
   DriveSummary summary;

@@ -70,7 +70,7 @@ struct DriveSummary {
 };
 
 /// Simulates a drive and writes DIR: velodyne/NNNNNN.bin, times.txt, point_times/ (with motion distortion), truth/ (trajectory.csv, poses_kitti.txt,
-/// initial_pose.txt, frame.json, buildings.csv), sources/ (town.osm.pbf, dsm.tif, dtm.tif), drive.json. docs/drivesim.md describes each.
+/// initial_pose.txt, frame.json, buildings.csv), sources/ (town.osm.pbf, dsm.tif, dtm.tif), drive.json. docs/man/drivesim.1.md describes each.
 /// Same options, same bytes, whatever `threads`. Whole or not at all.
 /// @throws UsageError, CrsError, IoError, FormatError
 DriveSummary simulate_drive(const DriveOptions& options, const std::filesystem::path& output, Overwrite overwrite, int threads,
