@@ -9,6 +9,7 @@
 #include <iostream>
 #include <iterator>
 #include <new>
+#include <string_view>
 #include <thread>
 
 #include <priormap/core/error.hpp>
@@ -286,8 +287,10 @@ int ToolApp::run(int argc, char** argv, const std::function<void(const ToolConte
   app.set_version_flag("--version", impl.name + " " + std::string(version), "Print the version, and end")->group(impl.group);
   app.get_help_ptr()->group(impl.group);
 
+  // When the command line is faulty, CLI11 has not set the flags yet.
+  const bool json_asked = std::find(argv, argv + argc, std::string_view("--log-json")) != argv + argc;
   const auto fail = [&](const std::string& message, int exit_code) {
-    Console(impl.name, impl.quiet, impl.log_json).error(message, exit_code);
+    Console(impl.name, impl.quiet, impl.log_json || json_asked).error(message, exit_code);
     return exit_code;
   };
 

@@ -192,6 +192,12 @@ TEST(ToolAppTest, ExceptionsBecomeExitCodes) {
             "{\"tool\":\"demo\",\"level\":\"error\",\"message\":\"bad \\\"x\\\"\",\"exit_code\":1}\n");
 }
 
+TEST(ToolAppTest, WrongUsageIsJsonWhereAskedFor) {
+  const Demo demo({"a", "-o", "out", "--log-json", "--count", "x"});
+  EXPECT_TRUE(demo.err.starts_with("{\"tool\":\"demo\",\"level\":\"error\"")) << demo.err;
+  EXPECT_EQ(demo.exit_code, 2);
+}
+
 TEST(ToolAppTest, TerminationLeavesNoPartialOutput) {
   const fs::path folder = fs::temp_directory_path() / ("priormap_signal_" + std::to_string(::getpid()));
   fs::create_directories(folder);

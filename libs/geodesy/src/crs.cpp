@@ -57,9 +57,15 @@ std::optional<std::string> identified_code(const ProjContext& context, const PJ*
   return code;
 }
 
-std::optional<std::string> code_of(const ProjContext& context, const PJ* crs, bool identify) {
-  if (const char* code = proj_get_id_code(crs, 0)) return verified_code(context, crs, proj_get_id_auth_name(crs, 0), code);
-  return identify ? identified_code(context, crs) : std::nullopt;
+/// Whether codes come from the registry itself or from a text that may be wrong about them, or lack them.
+enum class Codes { trusted, checked };
+
+std::optional<std::string> code_of(const ProjContext& context, const PJ* crs, Codes codes) {
+  const char *authority = proj_get_id_auth_name(crs, 0), *code = proj_get_id_code(crs, 0);
+  if (codes == Codes::trusted) return authority && code ? std::optional(std::string(authority) + ":" + code) : std::nullopt;
+  if (code) return verified_code(context, crs, authority, code);
+  // PROJ strings give no names, and nothing is identified without one: spare the long search.
+  return or_empty(proj_get_name(crs)) == "unknown" ? std::nullopt : identified_code(context, crs);
 }
 
 /// The CRS without the transformation to WGS 84 that WKT1 and PROJ strings may carry.
@@ -69,13 +75,16 @@ ProjObject unbound(const ProjContext& context, const PJ* crs) {
 }
 
 /// A code where there is one (then transformations are the authority's), else WKT2 with all that the input says.
-std::string definition_of(const ProjContext& context, const PJ* part, bool identify) {
+std::string definition_of(const ProjContext& context, const PJ* part, Codes codes) {
   const ProjObject plain = unbound(context, part);
-  if (const auto code = code_of(context, plain.get(), identify)) return *code;
+  if (const auto code = code_of(context, plain.get(), codes)) return *code;
   return as_wkt(context, part, PJ_WKT2_2019).value_or("");
 }
 
 bool is_code(const std::string& definition) { return definition.find('[') == std::string::npos; }
+
+/// Of a Crs's name: WKT stands there only where its codes, if it has any, are wrong.
+Codes codes_of(const Crs& crs) { return is_code(crs.name()) ? Codes::trusted : Codes::checked; }
 
 std::string joined_codes(const std::string& horizontal, const std::string& vertical) {
   const std::string epsg = "EPSG:";
@@ -111,7 +120,7 @@ void require_known_axes(const std::vector<Axis>& axes, const std::string& name) 
                    "; use the variant of this system with axes east and north");
 }
 
-void describe_horizontal(const ProjContext& context, const PJ* part, bool identify, Crs::Impl& impl) {
+void describe_horizontal(const ProjContext& context, const PJ* part, Codes codes, Crs::Impl& impl) {
   const ProjObject crs = unbound(context, part);
   const PJ_TYPE type = proj_get_type(crs.get());
   impl.geographic = type == PJ_TYPE_GEOGRAPHIC_2D_CRS || type == PJ_TYPE_GEOGRAPHIC_3D_CRS;
@@ -129,10 +138,10 @@ void describe_horizontal(const ProjContext& context, const PJ* part, bool identi
     impl.vertical_unit_m = axes[2].unit_factor;
   }
   const ProjObject flat(three_axes ? proj_crs_demote_to_2D(context, nullptr, part) : proj_clone(context, part));
-  impl.horizontal = definition_of(context, flat.get(), identify);
+  impl.horizontal = definition_of(context, flat.get(), codes);
   const ProjObject base(proj_crs_get_geodetic_crs(context, part));
   const ProjObject flat_base(base ? proj_crs_demote_to_2D(context, nullptr, base.get()) : nullptr);
-  if (flat_base) impl.geographic_base = definition_of(context, flat_base.get(), identify);
+  if (flat_base) impl.geographic_base = definition_of(context, flat_base.get(), codes);
 }
 
 void describe_vertical(const ProjContext& context, const PJ* part, Crs::Impl& impl) {
@@ -145,28 +154,28 @@ void describe_vertical(const ProjContext& context, const PJ* part, Crs::Impl& im
   impl.heights_point_down = axes[0].direction == "down";
 }
 
-std::shared_ptr<const Crs::Impl> describe(const ProjContext& context, const PJ* given, bool identify) {
+std::shared_ptr<const Crs::Impl> describe(const ProjContext& context, const PJ* given, Codes codes) {
   auto impl = std::make_shared<Crs::Impl>();
   const ProjObject crs = proj_get_type(given) == PJ_TYPE_BOUND_CRS ? unbound(context, given) : ProjObject(proj_clone(context, given));
   const PJ_TYPE type = proj_get_type(crs.get());
   if (type == PJ_TYPE_COMPOUND_CRS) {
     const ProjObject horizontal(proj_crs_get_sub_crs(context, crs.get(), 0)), vertical(proj_crs_get_sub_crs(context, crs.get(), 1));
-    describe_horizontal(context, horizontal.get(), identify, *impl);
+    describe_horizontal(context, horizontal.get(), codes, *impl);
     describe_vertical(context, vertical.get(), *impl);
-    impl->vertical_part = definition_of(context, vertical.get(), identify);
+    impl->vertical_part = definition_of(context, vertical.get(), codes);
     if (is_code(impl->horizontal) && is_code(*impl->vertical_part)) impl->name = joined_codes(impl->horizontal, *impl->vertical_part);
   } else if (type == PJ_TYPE_VERTICAL_CRS) {
     describe_vertical(context, crs.get(), *impl);
     impl->vertical = true;
-    impl->name = definition_of(context, given, identify);
+    impl->name = definition_of(context, given, codes);
     impl->vertical_part = impl->name;
   } else {
-    describe_horizontal(context, given, identify, *impl);
-    impl->name = impl->has_heights ? definition_of(context, given, identify) : impl->horizontal;
+    describe_horizontal(context, given, codes, *impl);
+    impl->name = impl->has_heights ? definition_of(context, given, codes) : impl->horizontal;
   }
 
   // From here on the CRS is what its name says, so that a copy made from the name is the same one.
-  const ProjObject canonical(impl->name.empty() ? proj_clone(context, crs.get()) : proj_create(context, impl->name.c_str()));
+  const ProjObject canonical = impl->name.empty() ? ProjObject(proj_clone(context, crs.get())) : create_crs(context, impl->name);
   const auto wkt2 = canonical ? as_wkt(context, canonical.get(), PJ_WKT2_2019) : std::nullopt;
   if (!wkt2) throw CrsError(shortened(or_empty(proj_get_name(given))) + " cannot be written as WKT: " + context.last_message());
   impl->wkt2 = *wkt2;
@@ -188,10 +197,11 @@ Crs::Crs(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 Crs Crs::parse(const std::string& text) {
   const ProjContext context;
   const std::string definition = proj_definition(text);
-  const ProjObject crs(proj_create(context, definition.c_str()));
+  const ProjObject crs = create_crs(context, definition);
   if (!crs) fail_unreadable(text, context);
   if (!proj_is_crs(crs.get())) throw CrsError("'" + shortened(text) + "' is no coordinate reference system");
-  return Crs(describe(context, crs.get(), true));
+  const bool from_registry = definition.find_first_of("[{+") == std::string::npos || definition.starts_with("EPSG:");
+  return Crs(describe(context, crs.get(), from_registry ? Codes::trusted : Codes::checked));
 }
 
 Crs Crs::utm_zone(double lon_deg, double lat_deg, bool prefer_etrs89) {
@@ -207,7 +217,8 @@ Crs Crs::utm_zone(double lon_deg, double lat_deg, bool prefer_etrs89) {
 
 Crs Crs::transverse_mercator(const Crs& geographic, double lat_0_deg, double lon_0_deg, double k_0) {
   const ProjContext context;
-  const ProjObject base(proj_create(context, geographic.geographic_base().name().c_str()));
+  const Crs base_crs = geographic.geographic_base();
+  const ProjObject base = create_crs(context, base_crs.name());
   const ProjObject conversion(proj_create_conversion_transverse_mercator(context, lat_0_deg, lon_0_deg, k_0, 0, 0, "degree",
                                                                          0.017453292519943295, "metre", 1));
   const ProjObject axes(proj_create_cartesian_2D_cs(context, PJ_CART2D_EASTING_NORTHING, "metre", 1));
@@ -215,7 +226,7 @@ Crs Crs::transverse_mercator(const Crs& geographic, double lat_0_deg, double lon
                            ? proj_create_projected_crs(context, "local transverse Mercator", base.get(), conversion.get(), axes.get())
                            : nullptr);
   if (!crs) throw CrsError("no transverse Mercator can be based on " + geographic.human_name() + ": " + context.last_message());
-  return Crs(describe(context, crs.get(), false));
+  return Crs(describe(context, crs.get(), codes_of(base_crs)));
 }
 
 const std::string& Crs::name() const { return impl_->name; }
@@ -237,7 +248,7 @@ std::string Crs::wkt1() const {
 
 std::string Crs::proj_string() const {
   const ProjContext context;
-  const ProjObject crs(proj_create(context, name().c_str()));
+  const ProjObject crs = create_crs(context, name());
   const char* text = crs ? proj_as_proj_string(context, crs.get(), PJ_PROJ_4, nullptr) : nullptr;
   if (!text) throw CrsError(impl_->human_name + " cannot be written as a PROJ string");
   return text;
@@ -258,11 +269,12 @@ Crs Crs::with_vertical(const Crs& vertical) const {
   if (!heights) throw CrsError(vertical.human_name() + " has no vertical coordinate reference system; give one such as EPSG:7837");
   const Crs flat = horizontal();
   const ProjContext context;
-  const ProjObject lower(proj_create(context, flat.name().c_str())), upper(proj_create(context, heights->name().c_str()));
+  const ProjObject lower = create_crs(context, flat.name()), upper = create_crs(context, heights->name());
   const std::string joint_name = flat.human_name() + " + " + heights->human_name();
   const ProjObject compound(proj_create_compound_crs(context, joint_name.c_str(), lower.get(), upper.get()));
   if (!compound) throw CrsError(joint_name + " cannot be combined: " + context.last_message());
-  return Crs(describe(context, compound.get(), false));
+  const Codes codes = codes_of(flat) == Codes::trusted ? codes_of(*heights) : Codes::checked;
+  return Crs(describe(context, compound.get(), codes));
 }
 
 Crs Crs::geographic_base() const {
@@ -273,7 +285,7 @@ Crs Crs::geographic_base() const {
 bool Crs::equivalent_to(const Crs& other) const {
   if (name() == other.name()) return true;
   const ProjContext context;
-  const ProjObject a(proj_create(context, name().c_str())), b(proj_create(context, other.name().c_str()));
+  const ProjObject a = create_crs(context, name()), b = create_crs(context, other.name());
   if (!a || !b) return false;
   const ProjObject a_east_first(proj_normalize_for_visualization(context, a.get()));
   const ProjObject b_east_first(proj_normalize_for_visualization(context, b.get()));
@@ -286,7 +298,7 @@ bool Crs::same_vertical_datum(const Crs& other) const {
   if (!mine || !theirs) return false;
   if (mine->equivalent_to(*theirs)) return true;
   const ProjContext context;
-  const ProjObject a(proj_create(context, mine->name().c_str())), b(proj_create(context, theirs->name().c_str()));
+  const ProjObject a = create_crs(context, mine->name()), b = create_crs(context, theirs->name());
   const ProjObject a_datum(a ? proj_crs_get_datum_forced(context, a.get()) : nullptr);
   const ProjObject b_datum(b ? proj_crs_get_datum_forced(context, b.get()) : nullptr);
   return a_datum && b_datum && proj_is_equivalent_to_with_ctx(context, a_datum.get(), b_datum.get(), PJ_COMP_EQUIVALENT) != 0;

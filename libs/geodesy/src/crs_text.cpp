@@ -86,6 +86,19 @@ std::string proj_string(const std::string& text) {
   return text.find("type=crs") == std::string::npos ? text + " +type=crs" : text;
 }
 
+/// Null where `text` is no "AUTHORITY:code" of the registry.
+ProjObject registered(const ProjContext& context, const std::string& text) {
+  const auto colon = text.find(':');
+  if (colon == std::string::npos) return nullptr;
+  const std::string authority = text.substr(0, colon), code = text.substr(colon + 1);
+  return ProjObject(proj_create_from_database(context, authority.c_str(), code.c_str(), PJ_CATEGORY_CRS, 0, nullptr));
+}
+
+ProjObject compound(const ProjContext& context, PJ* horizontal, PJ* vertical) {
+  const std::string name = std::string(proj_get_name(horizontal)) + " + " + proj_get_name(vertical);
+  return ProjObject(proj_create_compound_crs(context, name.c_str(), horizontal, vertical));
+}
+
 bool is_authority_and_code(const std::string& text) {
   const auto colon = text.find(':');
   if (colon == std::string::npos || colon == 0 || colon + 1 == text.size()) return false;
@@ -109,6 +122,22 @@ std::string proj_definition(const std::string& given) {
   if (is_authority_and_code(text)) return text;
   throw CrsError("'" + text.substr(0, 80) + "' is no code of a coordinate reference system; give one such as EPSG:25832+7837, WKT, " +
                  "PROJJSON or a PROJ string");
+}
+
+ProjObject create_crs(const ProjContext& context, const std::string& definition) {
+  if (is_authority_and_code(definition)) {
+    const auto plus = definition.find('+');
+    const std::string first = definition.substr(0, plus);
+    ProjObject horizontal = registered(context, first);
+    if (horizontal && plus == std::string::npos) return horizontal;
+    if (horizontal) {
+      const std::string second = definition.substr(plus + 1);
+      const bool own_authority = second.find(':') != std::string::npos;
+      const ProjObject vertical = registered(context, own_authority ? second : first.substr(0, first.find(':') + 1) + second);
+      if (vertical) return compound(context, horizontal.get(), vertical.get());
+    }
+  }
+  return ProjObject(proj_create(context, definition.c_str()));
 }
 
 }  // namespace priormap

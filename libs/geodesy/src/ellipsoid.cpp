@@ -5,13 +5,13 @@
 
 #include <priormap/core/error.hpp>
 
-#include "proj_context.hpp"
+#include "crs_text.hpp"
 
 namespace priormap {
 
 double gaussian_radius_m(const Crs& crs, double lat_deg) {
   const ProjContext context;
-  const ProjObject object(proj_create(context, crs.name().c_str()));
+  const ProjObject object = create_crs(context, crs.name());
   const ProjObject shape(object ? proj_get_ellipsoid(context, object.get()) : nullptr);
   double semi_major_m = 0, inverse_flattening = 0;
   if (!shape || !proj_ellipsoid_get_parameters(context, shape.get(), &semi_major_m, nullptr, nullptr, &inverse_flattening))

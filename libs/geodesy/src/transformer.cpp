@@ -6,7 +6,7 @@
 
 #include <priormap/core/error.hpp>
 
-#include "proj_context.hpp"
+#include "crs_text.hpp"
 
 namespace priormap {
 namespace {
@@ -104,16 +104,14 @@ std::string listed(const std::vector<Grid>& grids) {
   throw CrsError("no exact transformation is known from " + between(source, target));
 }
 
-std::vector<std::string> better_grids(const ProjContext& context, const ProjList& conceivable, std::optional<double> accuracy_m) {
-  if (!accuracy_m) return {};
-  double best_m = *accuracy_m;
+std::vector<std::string> better_grids(const ProjContext& context, const ProjList& conceivable, double accuracy_m) {
   std::vector<std::string> grids;
   for (int i = 0; i < count(conceivable); ++i) {
     const ProjObject operation(proj_list_get(context, conceivable.get(), i));
     const auto better_m = accuracy_of(context, operation.get());
     const auto missing = missing_grids(context, operation.get());
-    if (missing.empty() || !better_m || *better_m >= best_m) continue;
-    best_m = *better_m;
+    if (missing.empty() || !better_m || *better_m >= accuracy_m) continue;
+    accuracy_m = *better_m;
     grids = names_of(missing);
   }
   return grids;
@@ -121,10 +119,9 @@ std::vector<std::string> better_grids(const ProjContext& context, const ProjList
 
 CoordinateOperation choose_operation(const Crs& source, const Crs& target, const std::optional<LonLatArea>& area) {
   const ProjContext context;
-  const ProjObject from(proj_create(context, source.name().c_str())), to(proj_create(context, target.name().c_str()));
-  const ProjList conceivable = find_operations(context, from.get(), to.get(), area, Grids::any);
+  const ProjObject from = create_crs(context, source.name()), to = create_crs(context, target.name());
   const ProjList possible = find_operations(context, from.get(), to.get(), area, Grids::installed);
-  if (count(possible) == 0) refuse(context, conceivable, source, target);
+  if (count(possible) == 0) refuse(context, find_operations(context, from.get(), to.get(), area, Grids::any), source, target);
 
   const ProjObject chosen(proj_list_get(context, possible.get(), 0));
   const ProjObject east_first(proj_normalize_for_visualization(context, chosen.get()));
@@ -137,7 +134,8 @@ CoordinateOperation choose_operation(const Crs& source, const Crs& target, const
   operation.proj_string = pipeline;
   operation.accuracy_m = accuracy_of(context, chosen.get());
   operation.grids = names_of(grids_of(context, chosen.get()));
-  operation.better_grids = better_grids(context, conceivable, operation.accuracy_m);
+  if (operation.accuracy_m > 0.0)
+    operation.better_grids = better_grids(context, find_operations(context, from.get(), to.get(), area, Grids::any), *operation.accuracy_m);
   return operation;
 }
 

@@ -63,7 +63,9 @@ TEST(CrsTest, WrongCodeInWktIsNotBelieved) {
   std::string wkt = Crs::parse("EPSG:25832").wkt1();
   const std::string meridian = "\"central_meridian\",9";
   wkt.replace(wkt.find(meridian), meridian.size(), "\"central_meridian\",10");
-  EXPECT_EQ(Crs::parse(wkt).name().substr(0, 7), "PROJCRS");
+  const Crs crs = Crs::parse(wkt);
+  EXPECT_EQ(crs.name().substr(0, 7), "PROJCRS");
+  EXPECT_EQ(crs.with_vertical(Crs::parse("EPSG:7837")).name().substr(0, 11), "COMPOUNDCRS");
 }
 
 TEST(CrsTest, ProjStringsWithAndWithoutType) {
