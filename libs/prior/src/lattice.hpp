@@ -14,9 +14,10 @@ constexpr double lattice_step = 0.001;   ///< [CRS units]
 /// A coordinate on the lattice of a CRS: whole thousandths of its unit, halves upwards.
 /// @throws Error when it is no number or beyond 10^9 units.
 inline std::int64_t to_lattice(double value) {
-  const double scaled = std::floor(value * 1000.0 + 0.5);
+  const double scaled = value * 1000.0 + 0.5;
   if (!(std::abs(scaled) < 1e12)) throw Error("a point of the prior has a coordinate that is no number or out of range");
-  return static_cast<std::int64_t>(scaled);
+  const auto truncated = static_cast<std::int64_t>(scaled);
+  return truncated - (scaled < static_cast<double>(truncated) ? 1 : 0);
 }
 
 inline std::int32_t to_height_mm(double z) {

@@ -43,6 +43,7 @@ void radix_sort(std::vector<Keyed>& keys, int key_bits) {
   for (int shift = 0; shift < key_bits; shift += digit_bits) {
     std::array<std::uint32_t, buckets> start{};
     for (const Keyed& k : keys) ++start[(k.key >> shift) & (buckets - 1)];
+    if (start[(keys[0].key >> shift) & (buckets - 1)] == keys.size()) continue;
     std::uint32_t sum = 0;
     for (std::uint32_t& s : start) sum += std::exchange(s, sum);
     for (const Keyed& k : keys) sorted[start[(k.key >> shift) & (buckets - 1)]++] = k;
@@ -62,15 +63,19 @@ void sort_and_unite(std::vector<PointRecord>& points) {
   else
     std::sort(keys.begin(), keys.end(), [](const Keyed& a, const Keyed& b) { return a.key < b.key; });
 
-  std::vector<PointRecord> sorted(points.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) sorted[i] = points[keys[i].index];
+  std::vector<PointRecord> sorted;
+  sorted.reserve(points.size());
   for (std::size_t first = 0; first < keys.size();) {
-    std::size_t last = first + 1;
-    while (last < keys.size() && keys[last].key == keys[first].key) ++last;
-    if (last - first > 1) std::sort(sorted.begin() + std::ptrdiff_t(first), sorted.begin() + std::ptrdiff_t(last));
+    const std::size_t start = sorted.size();
+    std::size_t last = first;
+    for (; last < keys.size() && keys[last].key == keys[first].key; ++last) sorted.push_back(points[keys[last].index]);
+    if (last - first > 1) {
+      const auto group = sorted.begin() + std::ptrdiff_t(start);
+      std::sort(group, sorted.end());
+      sorted.erase(std::unique(group, sorted.end(), same_point), sorted.end());
+    }
     first = last;
   }
-  sorted.erase(std::unique(sorted.begin(), sorted.end(), same_point), sorted.end());
   points = std::move(sorted);
 }
 

@@ -1,30 +1,22 @@
 #pragma once
-#include <compare>
-#include <cstdint>
 #include <tuple>
+
+#include <priormap/pointcloud/las.hpp>
 
 namespace priormap {
 
-/// One point of a tile on the millimetre lattice, 32 bytes: what is spilled, sorted and written.
-struct PointRecord {
-  std::int32_t x = 0, y = 0;   ///< [0.001 CRS units] from the tile's lower-left corner
-  std::int32_t z = 0;          ///< [mm] in the prior's vertical CRS
-  std::int16_t normal[3] = {0, 0, 0};   ///< 1/32767; zero: unknown
-  std::uint8_t classification = 0;
-  std::uint8_t halo = 0;       ///< 1: belongs to a neighbouring tile, here as a witness only
-  std::uint16_t source = 0;
-  std::uint16_t sigma_mm = unknown_sigma;
-  std::uint32_t feature = 0;
-  float intensity = 0;   ///< never NaN
+/// One point of a tile on the lattice, 32 bytes: what is spilled, sorted and written. x and y count from the tile's lower-left corner
+/// [0.001 CRS units], z is the height [0.001 units of the vertical CRS].
+using PointRecord = LasPoint;
 
-  static constexpr std::uint16_t unknown_sigma = 65535;
-};
-static_assert(sizeof(PointRecord) == 32);
+/// While tiles are collected: the point belongs to a neighbouring tile and is here as a witness only.
+inline bool is_halo(const PointRecord& p) { return p.user_data != 0; }
+inline void mark_halo(PointRecord& p) { p.user_data = 1; }
 
 /// The order of points in a tile. Total: equal means equal in every column.
 inline auto sort_key(const PointRecord& p) {
   return std::make_tuple(p.x, p.y, p.z, p.source, p.feature, p.classification, p.normal[0], p.normal[1], p.normal[2], p.sigma_mm,
-                         p.intensity, p.halo);
+                         p.intensity, p.user_data);
 }
 inline bool operator<(const PointRecord& a, const PointRecord& b) { return sort_key(a) < sort_key(b); }
 

@@ -1,6 +1,8 @@
 #include "prior_assembly.hpp"
 
 #include <algorithm>
+#include <array>
+#include <memory>
 #include <numeric>
 
 #include <priormap/core/error.hpp>
@@ -15,43 +17,47 @@
 namespace priormap {
 namespace {
 
-/// Distributes the points of one cloud: points in a row that share a tile go to the spool together.
-class TileRuns {
- public:
-  TileRuns(const LatticeGrid& grid, std::int64_t halo_steps, TileSpool& spool) : grid_(grid), halo_(halo_steps), spool_(spool) {}
+/// Points of a cloud on the lattice, not yet in tiles.
+struct Block {
+  static constexpr std::size_t capacity = 1024;
+  std::array<PointRecord, capacity> records;
+  std::array<std::int64_t, capacity> x, y;
+};
 
-  void add(PointRecord record, std::int64_t x, std::int64_t y) {
-    if (run_.empty() || x < low_x_ || y < low_y_ || x >= low_x_ + grid_.tile_steps() || y >= low_y_ + grid_.tile_steps())
-      start(grid_.key(x, y));
-    record.x = std::int32_t(x - low_x_);
-    record.y = std::int32_t(y - low_y_);
-    run_.push_back(record);
-    if (is_near_edge(record)) add_halo(record, x, y);
-  }
-  void flush() {
-    if (!run_.empty()) spool_.add(key_, run_);
-    run_.clear();
+/// Distributes points: those in a row that share a tile go to the spool together.
+class TileDistributor {
+ public:
+  TileDistributor(const LatticeGrid& grid, std::int64_t halo_steps, TileSpool& spool) : grid_(grid), halo_(halo_steps), spool_(spool) {}
+
+  void add(Block& block, std::size_t count) const {
+    for (std::size_t first = 0; first < count;) {
+      const TileKey key = grid_.key(block.x[first], block.y[first]);
+      const std::int64_t low_x = grid_.origin(key.x), low_y = grid_.origin(key.y), size = grid_.tile_steps();
+      std::size_t last = first;
+      for (; last < count; ++last) {
+        const std::int64_t dx = block.x[last] - low_x, dy = block.y[last] - low_y;
+        if (dx < 0 || dy < 0 || dx >= size || dy >= size) break;
+        block.records[last].x = std::int32_t(dx);
+        block.records[last].y = std::int32_t(dy);
+        if (is_near_edge(dx, dy)) add_halo(block.records[last], block.x[last], block.y[last], key);
+      }
+      spool_.add(key, std::span(block.records).subspan(first, last - first));
+      first = last;
+    }
   }
 
  private:
-  void start(TileKey key) {
-    flush();
-    key_ = key;
-    low_x_ = grid_.origin(key.x);
-    low_y_ = grid_.origin(key.y);
-  }
-
-  bool is_near_edge(const PointRecord& p) const {
+  bool is_near_edge(std::int64_t dx, std::int64_t dy) const {
     const std::int64_t last = grid_.tile_steps() - 1 - halo_;
-    return halo_ > 0 && (p.x < halo_ || p.y < halo_ || p.x > last || p.y > last);
+    return halo_ > 0 && (dx < halo_ || dy < halo_ || dx > last || dy > last);
   }
 
-  void add_halo(PointRecord record, std::int64_t x, std::int64_t y) {
+  void add_halo(PointRecord record, std::int64_t x, std::int64_t y, TileKey own) const {
     const TileKey low = grid_.key(x - halo_, y - halo_), high = grid_.key(x + halo_, y + halo_);
-    record.halo = 1;
+    mark_halo(record);
     for (TileKey key = low; key.x <= high.x; ++key.x)
       for (key.y = low.y; key.y <= high.y; ++key.y) {
-        if (key == key_) continue;
+        if (key == own) continue;
         record.x = std::int32_t(x - grid_.origin(key.x));
         record.y = std::int32_t(y - grid_.origin(key.y));
         spool_.add(key, {&record, 1});
@@ -61,9 +67,6 @@ class TileRuns {
   const LatticeGrid& grid_;
   std::int64_t halo_;
   TileSpool& spool_;
-  TileKey key_;
-  std::int64_t low_x_ = 0, low_y_ = 0;
-  std::vector<PointRecord> run_;
 };
 
 /// Where each source goes when they are in order of precedence, then id.
@@ -125,18 +128,21 @@ PriorAssembly::PriorAssembly(const std::filesystem::path& directory, PriorManife
 template <class Position>
 void PriorAssembly::add_each(const PointCloud& columns, const Position& position) {
   columns.check_columns();
+  check_sources(columns);
   mark_features(columns);
-  const RecordColumns records(columns);
-  TileRuns runs(grid_, halo_steps_, tiles_);
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const Eigen::Vector3d p = position(i);
-    PointRecord record = records.record(i);
-    record.z = to_height_mm(p.z());
-    if (record.source >= manifest_.sources.size())
-      throw Error("a point names source " + std::to_string(record.source) + ", which the prior does not hold");
-    runs.add(record, to_lattice(p.x()), to_lattice(p.y()));
+  const TileDistributor tiles(grid_, halo_steps_, tiles_);
+  const auto block = std::make_unique<Block>();
+  for (std::size_t first = 0; first < columns.size(); first += Block::capacity) {
+    const std::size_t count = std::min(Block::capacity, columns.size() - first);
+    fill_columns(columns, first, std::span(block->records).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      const Eigen::Vector3d p = position(first + i);
+      block->x[i] = to_lattice(p.x());
+      block->y[i] = to_lattice(p.y());
+      block->records[i].z = to_height_mm(p.z());
+    }
+    tiles.add(*block, count);
   }
-  runs.flush();
 }
 
 void PriorAssembly::add(const PointCloud& points) {
@@ -145,6 +151,13 @@ void PriorAssembly::add(const PointCloud& points) {
 
 void PriorAssembly::add(const PointCloud& columns, std::span<const Eigen::Vector3d> positions) {
   add_each(columns, [&](std::size_t i) -> const Eigen::Vector3d& { return positions[i]; });
+}
+
+void PriorAssembly::check_sources(const PointCloud& points) const {
+  const auto largest = std::ranges::max_element(points.source);
+  const std::size_t number = largest == points.source.end() ? 0 : *largest;
+  if (!points.empty() && number >= manifest_.sources.size())
+    throw Error("a point names source " + std::to_string(number) + ", which the prior does not hold");
 }
 
 void PriorAssembly::mark_features(const PointCloud& points) {
@@ -172,7 +185,7 @@ void PriorAssembly::renumber(std::vector<PointRecord>& points) const {
 PriorAssembly::TileResult PriorAssembly::write_tile(TileKey key, const TileFilter& filter) {
   std::vector<PointRecord> points = tiles_.take(key);
   if (filter) filter(key, points);
-  std::erase_if(points, [](const PointRecord& p) { return p.halo != 0; });
+  std::erase_if(points, is_halo);
   renumber(points);
   sort_and_unite(points);
 
@@ -181,9 +194,8 @@ PriorAssembly::TileResult PriorAssembly::write_tile(TileKey key, const TileFilte
   result.entry.num_points = points.size();
   if (points.empty()) return result;
 
-  const PointCloud cloud = cloud_of(points, {grid_.origin(key.x), grid_.origin(key.y)});
-  const std::vector<std::byte> bytes =
-      encode_las(cloud, {.offset = {cloud.origin.x(), cloud.origin.y(), 0.0}, .wkt = wkt1_});
+  const Eigen::Array3d corner(double(grid_.origin(key.x)), double(grid_.origin(key.y)), 0);
+  const std::vector<std::byte> bytes = encode_las(points, {.offset = corner / 1000.0, .wkt = wkt1_});
   OutputFile out(directory_.temporary_path() / tiles_folder_name / (TileGrid::name(key) + ".las"));
   out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
   out.close();
@@ -197,7 +209,6 @@ PriorAssembly::TileResult PriorAssembly::write_tile(TileKey key, const TileFilte
     low = low.min(Eigen::Array3i(p.x, p.y, p.z));
     high = high.max(Eigen::Array3i(p.x, p.y, p.z));
   }
-  const Eigen::Array3d corner(double(grid_.origin(key.x)), double(grid_.origin(key.y)), 0);
   result.min = (low.cast<double>() + corner) / 1000.0;
   result.max = (high.cast<double>() + corner) / 1000.0;
   result.entry.min_z = float(result.min.z());

@@ -36,6 +36,7 @@ class PriorAssembly {
   TileResult write_tile(TileKey key, const TileFilter& filter);
   template <class Position>
   void add_each(const PointCloud& columns, const Position& position);
+  void check_sources(const PointCloud& points) const;
   void mark_features(const PointCloud& points);
   void renumber(std::vector<PointRecord>& points) const;
 

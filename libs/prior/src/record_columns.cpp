@@ -8,26 +8,32 @@ namespace {
 constexpr float normal_steps = 32767;
 
 std::int16_t normal_step(float component) {
-  return std::int16_t(std::lrint(std::clamp(component, -1.0f, 1.0f) * normal_steps));
+  const float steps = std::clamp(component, -1.0f, 1.0f) * normal_steps;
+  return std::int16_t(steps + (steps < 0 ? -0.5f : 0.5f));
 }
 
 std::uint16_t sigma_step(float sigma_m) {
-  const double mm = std::floor(double(sigma_m) * 1000.0 + 0.5);
+  const double mm = double(sigma_m) * 1000.0 + 0.5;
   return mm >= 0 ? std::uint16_t(std::min(mm, PointRecord::unknown_sigma - 1.0)) : PointRecord::unknown_sigma;
 }
 
 }  // namespace
 
-PointRecord RecordColumns::record(std::size_t i) const {
-  PointRecord record;
-  if (!points_.normal.empty())
-    for (int axis = 0; axis < 3; ++axis) record.normal[axis] = normal_step(points_.normal[i][axis]);
-  if (!points_.classification.empty()) record.classification = points_.classification[i];
-  if (!points_.source.empty()) record.source = points_.source[i];
-  if (!points_.sigma_m.empty()) record.sigma_mm = sigma_step(points_.sigma_m[i]);
-  record.feature = points_.feature.empty() ? PointCloud::no_feature : points_.feature[i];
-  if (!points_.intensity.empty() && !std::isnan(points_.intensity[i])) record.intensity = points_.intensity[i];
-  return record;
+void fill_columns(const PointCloud& points, std::size_t first, std::span<PointRecord> records) {
+  const auto fill = [&](const auto& column, const auto& set, const auto& neutral) {
+    if (column.empty())
+      for (PointRecord& r : records) set(r, neutral);
+    else
+      for (std::size_t i = 0; i < records.size(); ++i) set(records[i], column[first + i]);
+  };
+  fill(points.normal, [](PointRecord& r, const Eigen::Vector3f& v) { for (int a = 0; a < 3; ++a) r.normal[a] = normal_step(v[a]); },
+       Eigen::Vector3f(0, 0, 0));
+  fill(points.classification, [](PointRecord& r, std::uint8_t v) { r.classification = v; }, std::uint8_t(0));
+  fill(points.source, [](PointRecord& r, std::uint16_t v) { r.source = v; }, std::uint16_t(0));
+  fill(points.sigma_m, [](PointRecord& r, float v) { r.sigma_mm = sigma_step(v); }, std::numeric_limits<float>::quiet_NaN());
+  fill(points.feature, [](PointRecord& r, std::uint32_t v) { r.feature = v; }, PointCloud::no_feature);
+  fill(points.intensity, [](PointRecord& r, float v) { r.intensity = std::isnan(v) ? 0.0f : v; }, 0.0f);
+  for (PointRecord& r : records) r.user_data = 0;
 }
 
 PointCloud cloud_of(std::span<const PointRecord> records, LatticePoint corner) {

@@ -18,25 +18,40 @@ namespace {
 using namespace las;
 
 constexpr double normal_steps = 32767, sigma_steps_per_m = 1000;
-constexpr std::uint16_t unknown_sigma = 65535;
+constexpr std::uint16_t unknown_sigma = LasPoint::unknown_sigma;
 
-/// Which of the cloud's columns become extra bytes, and where.
-std::vector<ExtraField> plan_extra_fields(const PointCloud& points, std::size_t base_length) {
+/// Which columns become extra bytes.
+struct ExtraColumns {
+  bool normal, sigma, source, feature, intensity, time;
+};
+
+// The LAS intensity field is a 16-bit integer; other values are kept beside it.
+bool fits_las_intensity(float v) { return v >= 0 && v <= 65535 && v == static_cast<float>(static_cast<int>(v)); }
+
+ExtraColumns extra_columns(const PointCloud& points) {
+  return {!points.normal.empty(), !points.sigma_m.empty(), !points.source.empty(), !points.feature.empty(),
+          !std::all_of(points.intensity.begin(), points.intensity.end(), fits_las_intensity), !points.time_s.empty()};
+}
+
+ExtraColumns extra_columns(std::span<const LasPoint> points) {
+  const bool whole_intensities = std::all_of(points.begin(), points.end(), [](const LasPoint& p) { return fits_las_intensity(p.intensity); });
+  return {true, true, true, true, !whole_intensities, false};
+}
+
+std::vector<ExtraField> plan_extra_fields(const ExtraColumns& columns, std::size_t base_length) {
   std::vector<ExtraField> fields;
   std::size_t position = base_length;
   const auto add = [&](std::string_view name, ScalarType type, double scale = 1, std::optional<double> no_data = std::nullopt) {
     fields.push_back({std::string(name), type, scale, 0, no_data, position});
     position += size_of(type);
   };
-  // The LAS intensity field is a 16-bit integer; other values are kept beside it.
-  const auto fits_las_intensity = [](float v) { return v >= 0 && v <= 65535 && v == std::floor(v); };
-  if (!points.normal.empty())
+  if (columns.normal)
     for (const auto name : normal_names) add(name, ScalarType::int16, 1 / normal_steps);
-  if (!points.sigma_m.empty()) add(sigma_name, ScalarType::uint16, 1 / sigma_steps_per_m, unknown_sigma);
-  if (!points.source.empty()) add(source_name, ScalarType::uint16);
-  if (!points.feature.empty()) add(feature_name, ScalarType::uint32, 1, PointCloud::no_feature);
-  if (!std::all_of(points.intensity.begin(), points.intensity.end(), fits_las_intensity)) add(intensity_name, ScalarType::float32);
-  if (!points.time_s.empty()) add(time_name, ScalarType::float32);
+  if (columns.sigma) add(sigma_name, ScalarType::uint16, 1 / sigma_steps_per_m, unknown_sigma);
+  if (columns.source) add(source_name, ScalarType::uint16);
+  if (columns.feature) add(feature_name, ScalarType::uint32, 1, PointCloud::no_feature);
+  if (columns.intensity) add(intensity_name, ScalarType::float32);
+  if (columns.time) add(time_name, ScalarType::float32);
   return fields;
 }
 
@@ -214,27 +229,27 @@ void put_header(std::byte* at, const LasWriteOptions& options, const HeaderFacts
   }
 }
 
-void check(const PointCloud& points, const LasWriteOptions& options) {
-  points.check_columns();
+void check(std::size_t num_points, const LasWriteOptions& options) {
   if (base_record_length(options.point_format) == 0)
     throw UsageError("LAS point format " + std::to_string(options.point_format) + " is not supported; formats 0-3 and 6-8 are");
   if (!is_extended(options.point_format) && !options.wkt.empty())
     throw UsageError("LAS 1.2 holds no WKT; use point format 6, 7 or 8");
-  if (!is_extended(options.point_format) && points.size() > std::numeric_limits<std::uint32_t>::max())
+  if (!is_extended(options.point_format) && num_points > std::numeric_limits<std::uint32_t>::max())
     throw UsageError("LAS 1.2 holds at most 4294967295 points; use point format 6, 7 or 8");
   if (!options.scale.allFinite() || (options.scale.array() <= 0).any() || !options.offset.allFinite())
     throw UsageError("LAS scale must be positive and the offset finite");
 }
 
-}  // namespace
-
-std::vector<std::byte> encode_las(const PointCloud& points, const LasWriteOptions& options) {
-  check(points, options);
-  const auto fields = plan_extra_fields(points, base_record_length(options.point_format));
+/// A file around its point records: `encode_records(fields, records)` writes them and returns their extent.
+template <class EncodeRecords>
+std::vector<std::byte> encode_file(std::size_t num_points, const ExtraColumns& columns, const LasWriteOptions& options,
+                                   const EncodeRecords& encode_records) {
+  check(num_points, options);
+  const auto fields = plan_extra_fields(columns, base_record_length(options.point_format));
   const auto variable_records = plan_variable_records(options.wkt, fields);
 
   HeaderFacts facts{};
-  facts.num_points = points.size();
+  facts.num_points = num_points;
   facts.num_variable_records = variable_records.size();
   facts.record_length = fields.empty() ? base_record_length(options.point_format) : fields.back().position + size_of(fields.back().type);
   facts.points_position = is_extended(options.point_format) ? header_size_1_4 : header_size_1_2;
@@ -246,12 +261,57 @@ std::vector<std::byte> encode_las(const PointCloud& points, const LasWriteOption
     put_variable_record(&bytes[position], record);
     position += vlr_header_size + record.content.size();
   }
-  const RecordSink records{bytes.data() + facts.points_position, facts.num_points, facts.record_length};
-  facts.extent = encode_positions(points, options, records);
-  encode_standard_fields(points, options.point_format, records);
-  encode_columns(points, fields, records);
+  facts.extent = encode_records(fields, RecordSink{bytes.data() + facts.points_position, facts.num_points, facts.record_length});
   put_header(bytes.data(), options, facts);
   return bytes;
+}
+
+/// All columns of a point in one go; the four extra columns follow each other in every plan.
+Extent encode_lattice_points(std::span<const LasPoint> points, const LasWriteOptions& options, const std::vector<ExtraField>& fields,
+                             const RecordSink& records) {
+  const bool extended = is_extended(options.point_format);
+  const std::byte only_return{static_cast<unsigned char>(extended ? 0x11 : 0x09)};
+  const std::size_t class_position = extended ? 16 : 15, extra_position = fields.front().position;
+  const ExtraField* intensity = find(fields, intensity_name);
+  Eigen::Array3i low = Eigen::Array3i::Constant(std::numeric_limits<int>::max()), high = -low;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const LasPoint& p = points[i];
+    const Eigen::Array3i position(p.x, p.y, p.z);
+    low = low.min(position);
+    high = high.max(position);
+    std::byte* at = records.at(i, 0);
+    store(at, p.x);
+    store(at + 4, p.y);
+    store(at + 8, p.z);
+    store(at + 12, static_cast<std::uint16_t>(std::clamp(p.intensity, 0.0f, 65535.0f) + 0.5f));
+    at[14] = only_return;
+    store(at + class_position, p.classification);
+    store(at + 17, p.user_data);
+    std::memcpy(at + extra_position, p.normal, 6);
+    store(at + extra_position + 6, p.sigma_mm);
+    store(at + extra_position + 8, p.source);
+    store(at + extra_position + 10, p.feature);
+    if (intensity) store(at + intensity->position, p.intensity);
+  }
+  return {low.cast<double>(), high.cast<double>()};
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_las(const PointCloud& points, const LasWriteOptions& options) {
+  points.check_columns();
+  return encode_file(points.size(), extra_columns(points), options, [&](const auto& fields, const RecordSink& records) {
+    const Extent extent = encode_positions(points, options, records);
+    encode_standard_fields(points, options.point_format, records);
+    encode_columns(points, fields, records);
+    return extent;
+  });
+}
+
+std::vector<std::byte> encode_las(std::span<const LasPoint> points, const LasWriteOptions& options) {
+  return encode_file(points.size(), extra_columns(points), options, [&](const auto& fields, const RecordSink& records) {
+    return encode_lattice_points(points, options, fields, records);
+  });
 }
 
 void write_las(const std::filesystem::path& file, const PointCloud& points, const LasWriteOptions& options) {

@@ -82,11 +82,12 @@ void spool_points(const PriorStore& prior, const BoxFilter& box, const Transform
     for (std::size_t i = 0; i < points.size(); ++i) positions[i] = points.position(i);
     std::vector<Eigen::Vector3d> moved = positions;
     from_prior.forward(moved);
-    const RecordColumns columns(points);
+    std::vector<PointRecord> records(points.size());
+    fill_columns(points, 0, records);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const std::int64_t x = to_lattice(moved[i].x()), y = to_lattice(moved[i].y());
       const TileKey target = grid.key(x, y);
-      PointRecord record = columns.record(i);
+      PointRecord& record = records[i];
       record.x = std::int32_t(x - grid.origin(target.x));
       record.y = std::int32_t(y - grid.origin(target.y));
       record.z = to_height_mm(positions[i].z() * vertical_unit_m);

@@ -14,10 +14,12 @@ namespace priormap {
 namespace {
 
 void append_records(const PointCloud& points, LatticePoint reference, std::vector<PointRecord>& records) {
-  const RecordColumns columns(points);
+  const std::size_t first = records.size();
+  records.resize(first + points.size());
+  fill_columns(points, 0, std::span(records).subspan(first));
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d p = points.position(i);
-    PointRecord& record = records.emplace_back(columns.record(i));
+    PointRecord& record = records[first + i];
     record.x = std::int32_t(to_lattice(p.x()) - reference.x);
     record.y = std::int32_t(to_lattice(p.y()) - reference.y);
     record.z = to_height_mm(p.z());

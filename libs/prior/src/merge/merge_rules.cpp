@@ -44,7 +44,7 @@ std::uint64_t MergeRules::erase(std::vector<PointRecord>& points, const Doomed& 
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (doomed[i])
-      erased += points[i].halo == 0;
+      erased += is_halo(points[i]) ? 0 : 1;
     else
       points[kept++] = points[i];
   }
