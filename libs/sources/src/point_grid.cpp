@@ -1,41 +1,49 @@
 #include "point_grid.hpp"
 
-#include <Eigen/Geometry>
-
 namespace priormap {
 namespace {
 
 /// Beyond this difference of slope between its two sides a cell lies on a step, such as a roof's edge.
 constexpr double step_slope = 1;
 
-double rounded(double v) { return std::floor(v * 1000 + 0.5) / 1000; }
+/// In whole thousandths: adding and taking away 1.5 * 2^52 rounds to the nearest, without a library call.
+inline double thousandths(double v) {
+  constexpr double rounding = 6755399441055744.0;
+  return (v * 1000 + rounding) - rounding;
+}
 
-Eigen::Vector3d position(const PointGrid& grid, std::size_t i) { return {grid.x[i], grid.y[i], grid.z[i]}; }
+/// The step of height from a point to the next, given the heights before and after: the mean of both sides, or the flatter side where they
+/// differ by more than `limit`, or the one that is known. NaN where neither is.
+inline float height_step(double before, double z, double after, float limit) {
+  const auto in = static_cast<float>(z - before), out = static_cast<float>(after - z);
+  const bool in_known = in == in, out_known = out == out;
+  const float flatter = in_known && (!out_known || std::abs(in) <= std::abs(out)) ? in : out;
+  return std::abs(in - out) <= limit ? 0.5f * (in + out) : flatter;
+}
 
-/// The surface's direction at a point along one axis of the grid, from the point before and the point after; zero where neither is known.
-Eigen::Vector3d tangent(const Eigen::Vector3d& before, const Eigen::Vector3d& p, const Eigen::Vector3d& after) {
-  const bool has_before = !std::isnan(before.z()), has_after = !std::isnan(after.z());
-  if (has_before && has_after) {
-    const Eigen::Vector3d in = p - before, out = after - p;
-    const double in_length = in.head<2>().norm(), out_length = out.head<2>().norm();
-    const double in_slope = in.z() / in_length, out_slope = out.z() / out_length;
-    if (std::abs(in_slope - out_slope) <= step_slope) return in + out;
-    return std::abs(in_slope) < std::abs(out_slope) ? in : out;
+class NormalRule {
+ public:
+  explicit NormalRule(const PointGrid& grid)
+      : along_(grid.along.cast<float>()),
+        down_(grid.down.cast<float>()),
+        up_(along_.x() * down_.y() - along_.y() * down_.x()),
+        limit_along_(static_cast<float>(step_slope) * along_.norm()),
+        limit_down_(static_cast<float>(step_slope) * down_.norm()),
+        sign_(up_ < 0 ? -1.0f : 1.0f) {}
+
+  /// (along, step) x (down, step), upwards; zero where a step is not known.
+  Eigen::Vector3f at(const double* z, std::size_t width) const {
+    const float a = height_step(z[-1], z[0], z[1], limit_along_);
+    const float d = height_step(z[-static_cast<std::ptrdiff_t>(width)], z[0], z[width], limit_down_);
+    const float x = along_.y() * d - a * down_.y(), y = a * down_.x() - along_.x() * d;
+    const float scale = sign_ / std::sqrt(x * x + y * y + up_ * up_);
+    return scale == scale ? Eigen::Vector3f(x * scale, y * scale, up_ * scale) : Eigen::Vector3f(0, 0, 0);
   }
-  if (has_before) return p - before;
-  if (has_after) return after - p;
-  return Eigen::Vector3d::Zero();
-}
 
-Eigen::Vector3f normal_at(const PointGrid& grid, std::size_t i) {
-  const Eigen::Vector3d p = position(grid, i);
-  const Eigen::Vector3d along = tangent(position(grid, i - 1), p, position(grid, i + 1));
-  const Eigen::Vector3d down = tangent(position(grid, i - grid.width), p, position(grid, i + grid.width));
-  const Eigen::Vector3d normal = along.cross(down);
-  const double length = normal.norm();
-  if (!(length > 0)) return Eigen::Vector3f::Zero();
-  return (normal * ((normal.z() < 0 ? -1 : 1) / length)).cast<float>();
-}
+ private:
+  Eigen::Vector2f along_, down_;
+  float up_, limit_along_, limit_down_, sign_;
+};
 
 }  // namespace
 
@@ -50,16 +58,31 @@ void PointGrid::resize(std::size_t new_width, std::size_t new_height) {
 PointCloud points_of_grid(const PointGrid& grid) {
   PointCloud points;
   if (grid.width < 3 || grid.height < 3) return points;
-  points.xyz.reserve((grid.width - 2) * (grid.height - 2));
-  points.normal.reserve(points.xyz.capacity());
-  for (std::size_t col = 1; col + 1 < grid.width; ++col) {
-    for (std::size_t row = grid.height - 2; row > 0; --row) {
+  const std::size_t inner_width = grid.width - 2, inner_height = grid.height - 2;
+  std::size_t count = 0, last = 0;
+  for (std::size_t row = 1; row <= inner_height; ++row) {
+    for (std::size_t i = row * grid.width + 1; i <= row * grid.width + inner_width; ++i) {
+      if (std::isnan(grid.z[i])) continue;
+      ++count;
+      last = i;
+    }
+  }
+  if (count == 0) return points;
+
+  points.origin = Eigen::Vector3d(grid.x[last], grid.y[last], grid.z[last]).array().round();
+  const Eigen::Vector3d origin = points.origin * 1000;
+  const NormalRule rule(grid);
+  points.xyz.resize(count);
+  points.normal.resize(count);
+  std::size_t k = 0;
+  for (std::size_t col = 1; col <= inner_width; ++col) {
+    for (std::size_t row = inner_height; row > 0; --row) {
       const std::size_t i = row * grid.width + col;
       if (std::isnan(grid.z[i])) continue;
-      if (points.empty()) points.origin = position(grid, i).array().round();
-      const Eigen::Vector3d p(rounded(grid.x[i]), rounded(grid.y[i]), rounded(grid.z[i]));
-      points.xyz.push_back((p - points.origin).cast<float>());
-      points.normal.push_back(normal_at(grid, i));
+      points.xyz[k] = {static_cast<float>((thousandths(grid.x[i]) - origin.x()) * 0.001), static_cast<float>((thousandths(grid.y[i]) - origin.y()) * 0.001),
+                       static_cast<float>((thousandths(grid.z[i]) - origin.z()) * 0.001)};
+      points.normal[k] = rule.at(&grid.z[i], grid.width);
+      ++k;
     }
   }
   return points;

@@ -9,10 +9,12 @@
 namespace priormap {
 
 /// A grid of points in the target CRS, row by row, with one more on each side than are asked for: the neighbours of the outermost.
-/// Where there is no height, z is NaN.
+/// Where there is no height, z is NaN and x, y mean nothing.
 struct PointGrid {
   std::size_t width = 0, height = 0;   ///< with the neighbours
   std::vector<double> x, y, z;
+  /// The way from one point to the next one in its row, and to the one below: equal all over a grid of a few km, for normals.
+  Eigen::Vector2d along = Eigen::Vector2d::Zero(), down = Eigen::Vector2d::Zero();
 
   void resize(std::size_t new_width, std::size_t new_height);
   std::size_t size() const { return width * height; }

@@ -1,6 +1,7 @@
 #include <priormap/sources/raster_points.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <variant>
@@ -20,7 +21,7 @@ namespace {
 /// A cloud reaches no farther than this from its origin, so that float32 keeps the millimetre lattice.
 constexpr double cloud_extent = 2048;
 /// Cells of one reading of the file, and of one cloud.
-constexpr int block_cells = 1 << 18, cloud_edge = 256;
+constexpr int block_cells = 1 << 18, cloud_edge = 128;
 
 bool overlap(const Bounds2& a, const Bounds2& b) { return a.min_x < b.max_x && b.min_x < a.max_x && a.min_y < b.max_y && b.min_y < a.max_y; }
 
@@ -73,7 +74,7 @@ class CellSampling {
     for (int row = inner.row; row < inner.row + inner.height; row += cloud_edge_) {
       for (int col = inner.col; col < inner.col + inner.width; col += cloud_edge_) {
         fill_grid({col, row, std::min(cloud_edge_, inner.col + inner.width - col), std::min(cloud_edge_, inner.row + inner.height - row)}, outer);
-        if (!transformer_.exact().is_identity()) transform_known(transformer_, grid_, buffer_);
+        if (!transformer_.exact().is_identity()) transform_grid();
         PointCloud points = points_of_grid(grid_);
         if (!points.empty()) visit(points);
       }
@@ -113,9 +114,25 @@ class CellSampling {
     return {left, top, right - left, bottom - top};
   }
 
+  /// Positions with a height go to the target CRS; the steps between cells become those at the middle of the grid.
+  void transform_grid() {
+    const std::size_t i = (grid_.height / 2) * grid_.width + grid_.width / 2;
+    const Eigen::Vector2d middle(grid_.x[i], grid_.y[i]);
+    std::array<Eigen::Vector3d, 3> p;
+    p[0] << middle, 0;
+    p[1] << middle + grid_.along, 0;
+    p[2] << middle + grid_.down, 0;
+    transformer_.exact().forward(p);
+    grid_.along = (p[1] - p[0]).head<2>();
+    grid_.down = (p[2] - p[0]).head<2>();
+    transform_known(transformer_, grid_, buffer_);
+  }
+
   void fill_grid(const CellWindow& window, const CellWindow& held) {
     grid_.resize(static_cast<std::size_t>(window.width) + 2, static_cast<std::size_t>(window.height) + 2);
     const Eigen::Affine2d& world_from_cell = raster_.world_from_cell();
+    grid_.along = world_from_cell.linear().col(0);
+    grid_.down = world_from_cell.linear().col(1);
     std::size_t i = 0;
     for (int row = window.row - 1; row <= window.row + window.height; ++row) {
       for (int col = window.col - 1; col <= window.col + window.width; ++col, ++i) {
@@ -165,6 +182,8 @@ class LatticeSampling {
   void read_block(std::size_t block, const std::function<void(PointCloud&)>& visit) {
     const auto [first_i, first_j] = blocks_[block];
     grid_.resize(static_cast<std::size_t>(block_nodes_) + 2, static_cast<std::size_t>(block_nodes_) + 2);
+    grid_.along = {spacing_, 0};
+    grid_.down = {0, -spacing_};
     std::size_t k = 0;
     for (std::int64_t j = first_j + block_nodes_; j >= first_j - 1; --j) {
       for (std::int64_t i = first_i - 1; i <= first_i + block_nodes_; ++i, ++k) {

@@ -60,78 +60,84 @@ const ExtraField* find(const std::vector<ExtraField>& fields, std::string_view n
   return found == fields.end() ? nullptr : &*found;
 }
 
+/// Points [begin, end) of the cloud and where their records go. Columns are written block by block, so that a block stays in the cache.
 struct RecordSink {
-  std::byte* first;
-  std::size_t count, length;
-  std::byte* at(std::size_t i, std::size_t position) const { return first + i * length + position; }
+  std::byte* records;   ///< of point 0
+  std::size_t length;
+  std::size_t begin, end;
+  std::byte* at(std::size_t i, std::size_t position) const { return records + i * length + position; }
 };
+
+constexpr std::size_t block_points = 1024;
+
+/// To the nearest integer, ties to even, without a library call.
+inline double nearest(double v) {
+  constexpr double rounding = 6755399441055744.0;  // 1.5 * 2^52
+  return (v + rounding) - rounding;
+}
 
 struct Extent {
   Eigen::Array3d min = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Array3d max = Eigen::Array3d::Constant(-std::numeric_limits<double>::infinity());
 };
 
-/// Positions as multiples of the scale; returns their extent in multiples.
-Extent encode_positions(const PointCloud& points, const LasWriteOptions& options, const RecordSink& records) {
-  // Adding and taking away 1.5 * 2^52 rounds to the nearest integer, ties to even, without a library call.
-  constexpr double rounding = 6755399441055744.0;
+/// Positions as multiples of the scale; widens `extent`, in multiples.
+void encode_positions(const PointCloud& points, const LasWriteOptions& options, const RecordSink& sink, Extent& extent) {
   const Eigen::Array3d steps = options.scale.array().inverse(), shift = (points.origin - options.offset).array();
-  Extent extent;
-  bool all_finite = true;
-  for (std::size_t i = 0; i < records.count; ++i) {
-    Eigen::Array3d q = (points.xyz[i].cast<double>().array() + shift) * steps;
-    q = (q + rounding) - rounding;
-    all_finite &= q.isFinite().all();
-    extent.min = extent.min.min(q);
-    extent.max = extent.max.max(q);
-    std::byte* at = records.at(i, 0);
-    for (int axis = 0; axis < 3; ++axis)
-      store(at + 4 * axis, static_cast<std::int32_t>(std::clamp(q[axis], -2147483648.0, 2147483647.0)));
+  for (std::size_t i = sink.begin; i < sink.end; ++i) {
+    std::byte* at = sink.at(i, 0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double q = nearest((static_cast<double>(points.xyz[i][axis]) + shift[axis]) * steps[axis]);
+      if (!(q >= -2147483648.0 && q <= 2147483647.0)) {
+        if (std::isnan(q)) throw UsageError("LAS cannot hold a position that is no number");
+        throw UsageError("positions lie too far from the LAS offset for the scale (32 bits); choose an offset near the points");
+      }
+      extent.min[axis] = std::min(extent.min[axis], q);
+      extent.max[axis] = std::max(extent.max[axis], q);
+      store(at + 4 * axis, static_cast<std::int32_t>(q));
+    }
   }
-  if (!all_finite) throw UsageError("LAS cannot hold a position that is no number");
-  if ((extent.min < -2147483648.0).any() || (extent.max > 2147483647.0).any())
-    throw UsageError("positions lie too far from the LAS offset for the scale (32 bits); choose an offset near the points");
-  return extent;
 }
 
-void encode_standard_fields(const PointCloud& points, int point_format, const RecordSink& records) {
+void encode_standard_fields(const PointCloud& points, int point_format, const RecordSink& sink) {
   const bool extended = is_extended(point_format);
   const std::byte only_return{static_cast<unsigned char>(extended ? 0x11 : 0x09)};  // return 1 of 1
   const std::size_t class_position = extended ? 16 : 15;
-  for (std::size_t i = 0; i < records.count; ++i) *records.at(i, 14) = only_return;
-  for (std::size_t i = 0; i < points.intensity.size(); ++i)
-    store(records.at(i, 12), static_cast<std::uint16_t>(std::clamp(std::nearbyint(points.intensity[i]), 0.0f, 65535.0f)));
-  for (std::size_t i = 0; i < points.classification.size(); ++i) {
+  for (std::size_t i = sink.begin; i < sink.end; ++i) *sink.at(i, 14) = only_return;
+  if (!points.intensity.empty())
+    for (std::size_t i = sink.begin; i < sink.end; ++i) {
+      const double whole = nearest(points.intensity[i]);
+      store(sink.at(i, 12), static_cast<std::uint16_t>(whole > 0 ? std::min(whole, 65535.0) : 0.0));
+    }
+  if (points.classification.empty()) return;
+  for (std::size_t i = sink.begin; i < sink.end; ++i) {
     if (!extended && points.classification[i] > 31)
       throw UsageError("class " + std::to_string(points.classification[i]) + " needs LAS point format 6, 7 or 8");
-    store(records.at(i, class_position), points.classification[i]);
+    store(sink.at(i, class_position), points.classification[i]);
   }
 }
 
-void encode_normals(const PointCloud& points, const std::vector<ExtraField>& fields, const RecordSink& records) {
+void encode_normals(const PointCloud& points, const std::vector<ExtraField>& fields, const RecordSink& sink) {
   const ExtraField* first = find(fields, normal_names[0]);
   if (!first) return;
-  const auto steps = [](float v) { return static_cast<std::int16_t>(std::lrint(std::clamp(v, -1.0f, 1.0f) * static_cast<float>(normal_steps))); };
-  for (std::size_t i = 0; i < records.count; ++i) {
-    const Eigen::Vector3f& n = points.normal[i];
-    std::byte* at = records.at(i, first->position);
-    store(at, steps(n.x()));
-    store(at + 2, steps(n.y()));
-    store(at + 4, steps(n.z()));
+  const auto steps = [](float v) { return static_cast<std::int16_t>(v >= -1 && v <= 1 ? nearest(v * normal_steps) : v > 1 ? normal_steps : v < -1 ? -normal_steps : 0); };
+  for (std::size_t i = sink.begin; i < sink.end; ++i) {
+    std::byte* at = sink.at(i, first->position);
+    for (int axis = 0; axis < 3; ++axis) store(at + 2 * axis, steps(points.normal[i][axis]));
   }
 }
 
 std::uint16_t sigma_steps(float sigma_m) {
   const double steps = static_cast<double>(sigma_m) * sigma_steps_per_m;
-  return steps >= 0 ? static_cast<std::uint16_t>(std::lrint(std::min(steps, unknown_sigma - 1.0))) : unknown_sigma;
+  return steps >= 0 ? static_cast<std::uint16_t>(nearest(std::min(steps, unknown_sigma - 1.0))) : unknown_sigma;
 }
 
-void encode_columns(const PointCloud& points, const std::vector<ExtraField>& fields, const RecordSink& records) {
-  encode_normals(points, fields, records);
+void encode_columns(const PointCloud& points, const std::vector<ExtraField>& fields, const RecordSink& sink) {
+  encode_normals(points, fields, sink);
   const auto encode = [&](std::string_view name, const auto& column, auto convert) {
     const ExtraField* field = find(fields, name);
     if (!field) return;
-    for (std::size_t i = 0; i < records.count; ++i) store(records.at(i, field->position), convert(column[i]));
+    for (std::size_t i = sink.begin; i < sink.end; ++i) store(sink.at(i, field->position), convert(column[i]));
   };
   const auto as_is = [](auto v) { return v; };
   encode(sigma_name, points.sigma_m, sigma_steps);
@@ -261,7 +267,7 @@ std::vector<std::byte> encode_file(std::size_t num_points, const ExtraColumns& c
     put_variable_record(&bytes[position], record);
     position += vlr_header_size + record.content.size();
   }
-  facts.extent = encode_records(fields, RecordSink{bytes.data() + facts.points_position, facts.num_points, facts.record_length});
+  facts.extent = encode_records(fields, RecordSink{bytes.data() + facts.points_position, facts.record_length, 0, facts.num_points});
   put_header(bytes.data(), options, facts);
   return bytes;
 }
@@ -301,9 +307,13 @@ Extent encode_lattice_points(std::span<const LasPoint> points, const LasWriteOpt
 std::vector<std::byte> encode_las(const PointCloud& points, const LasWriteOptions& options) {
   points.check_columns();
   return encode_file(points.size(), extra_columns(points), options, [&](const auto& fields, const RecordSink& records) {
-    const Extent extent = encode_positions(points, options, records);
-    encode_standard_fields(points, options.point_format, records);
-    encode_columns(points, fields, records);
+    Extent extent;
+    for (std::size_t begin = 0; begin < records.end; begin += block_points) {
+      const RecordSink block{records.records, records.length, begin, std::min(begin + block_points, records.end)};
+      encode_positions(points, options, block, extent);
+      encode_standard_fields(points, options.point_format, block);
+      encode_columns(points, fields, block);
+    }
     return extent;
   });
 }

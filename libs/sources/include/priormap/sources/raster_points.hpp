@@ -19,7 +19,7 @@ struct RasterPointsOptions {
 
 /// The heights of a raster as points with normals, block by block, in memory that does not grow with the raster.
 ///
-/// Positions are rounded to 0.001 units of the target CRS (halves upwards). They depend on the raster alone: not on blocks, `within` or the
+/// Positions are rounded to 0.001 units of the target CRS. They depend on the raster alone: not on blocks, `within` or the
 /// order of calls. The normal of a cell comes from its four neighbours: the mean slope per axis, but where the two sides differ by more
 /// than 45 degrees (a roof's edge) the flatter side alone; zero where an axis has no neighbour with data.
 ///
