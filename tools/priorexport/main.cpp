@@ -1,3 +1,4 @@
+#include <iostream>
 #include <optional>
 #include <string>
 
@@ -19,9 +20,7 @@ int main(int argc, char** argv) {
   return app.run(argc, argv, [&](const priormap::cli::ToolContext& context) {
     if (!file && !autoware) throw priormap::UsageError("nothing to write: give -o FILE, --autoware DIR or both");
     const priormap::PriorStore prior(directory);
-    const auto report = [&](const std::string& path, std::uint64_t points) {
-      context.events.inform(path + ": " + std::to_string(points) + " points");
-    };
+    const auto report = [](const std::string& path, std::uint64_t points) { std::cout << path << ": " << points << " points\n"; };
     if (file) report(*file, priormap::export_cloud(prior, *file, options, context.overwrite, context.events));
     if (autoware)
       report(*autoware, priormap::export_autoware(prior, *autoware, options, autoware_options, context.overwrite, context.events));

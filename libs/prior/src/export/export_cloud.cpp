@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <priormap/core/error.hpp>
@@ -46,6 +47,13 @@ std::vector<std::vector<TileKey>> columns_of(const std::vector<TileKey>& keys) {
   return columns;
 }
 
+/// LAS holds WKT, the others name the CRS in their .georef.json.
+std::string crs_for(const std::filesystem::path& file, const std::string& crs) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return crs.empty() || extension != ".las" ? crs : Crs::parse(crs).wkt1();
+}
+
 void refuse_vast(const PriorStore& prior) {
   constexpr double widest = 2'000'000;   // 32 bits of lattice steps
   if ((prior.manifest().max - prior.manifest().min).maxCoeff() > widest)
@@ -81,7 +89,7 @@ std::uint64_t export_cloud(const PriorStore& prior, const std::filesystem::path&
                            const Events& events) {
   if (overwrite == Overwrite::refuse && std::filesystem::exists(file)) throw IoError(file, "exists already; --overwrite replaces it");
   const PointCloud cloud = prior_cloud(prior, options, events);
-  write_point_cloud(file, cloud, {.crs = prior.manifest().crs, .overwrite = overwrite});
+  write_point_cloud(file, cloud, {.crs = crs_for(file, prior.manifest().crs), .overwrite = overwrite});
   return cloud.size();
 }
 

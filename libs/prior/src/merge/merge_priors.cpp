@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <iomanip>
 #include <map>
 #include <memory>
+#include <sstream>
 
 #include <priormap/core/error.hpp>
 #include <priormap/core/parallel.hpp>
@@ -177,6 +180,24 @@ class TileMerger {
 };
 
 }  // namespace
+
+std::string to_text(const MergeReport& report) {
+  std::ostringstream text;
+  const auto line = [&](const std::string& name, const auto& value) { text << std::left << std::setw(28) << name << value << '\n'; };
+  const auto count = [&](const std::string& name, std::uint64_t value) {
+    if (value != 0) line(name, value);
+  };
+  line("points", report.kept);
+  line("tiles", report.manifest.num_tiles);
+  line("features", report.manifest.num_features);
+  line("sources", report.manifest.sources.size());
+  line("crs", report.manifest.crs.empty() ? "none" : report.manifest.crs);
+  count("duplicates united", report.duplicates);
+  count("left out under models", report.under_models);
+  count("left out as contradicted", report.contradicted);
+  count("left out by precedence", report.thinned);
+  return text.str();
+}
 
 MergeReport merge_priors(const std::vector<std::filesystem::path>& inputs, const std::filesystem::path& output,
                          const MergeOptions& options, Overwrite overwrite, int threads, const std::string& generator,

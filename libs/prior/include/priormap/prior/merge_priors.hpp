@@ -39,6 +39,9 @@ struct MergeReport {
   std::uint64_t thinned = 0;            ///< nearer than the minimum distance to a source of higher precedence
 };
 
+/// "name    value" a line, what happened to no point left out.
+std::string to_text(const MergeReport& report);
+
 /// Joins priors into one. The rules are in docs/merging.md; none of them looks at tiles, threads or the order of points, so that
 /// merging any split of a prior gives the prior.
 /// @throws CrsError when heights undeclared and declared, or declared differently, meet without `assume_vertical`, or no exact
