@@ -5,8 +5,8 @@
 #include <cctype>
 #include <optional>
 #include <string_view>
+#include <tuple>
 #include <utility>
-#include <vector>
 
 #include <priormap/core/error.hpp>
 
@@ -86,25 +86,44 @@ std::string proj_string(const std::string& text) {
   return text.find("type=crs") == std::string::npos ? text + " +type=crs" : text;
 }
 
-/// Null where `text` is no "AUTHORITY:code" of the registry.
-ProjObject registered(const ProjContext& context, const std::string& text) {
-  const auto colon = text.find(':');
-  if (colon == std::string::npos) return nullptr;
-  const std::string authority = text.substr(0, colon), code = text.substr(colon + 1);
+ProjObject registered(const ProjContext& context, const std::string& authority, const std::string& code) {
   return ProjObject(proj_create_from_database(context, authority.c_str(), code.c_str(), PJ_CATEGORY_CRS, 0, nullptr));
 }
 
-ProjObject compound(const ProjContext& context, PJ* horizontal, PJ* vertical) {
-  const std::string name = std::string(proj_get_name(horizontal)) + " + " + proj_get_name(vertical);
-  return ProjObject(proj_create_compound_crs(context, name.c_str(), horizontal, vertical));
+ProjObject compound(const ProjContext& context, const ProjObject& horizontal, const ProjObject& vertical) {
+  if (!horizontal || !vertical) return nullptr;
+  const std::string name = std::string(proj_get_name(horizontal.get())) + " + " + proj_get_name(vertical.get());
+  return ProjObject(proj_create_compound_crs(context, name.c_str(), horizontal.get(), vertical.get()));
 }
 
-bool is_authority_and_code(const std::string& text) {
-  const auto colon = text.find(':');
-  if (colon == std::string::npos || colon == 0 || colon + 1 == text.size()) return false;
-  return std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == ':' || c == '+' || c == '_' || c == '.' || c == '-';
-  });
+/// "AUTHORITY:code", "AUTHORITY:code+code" or "AUTHORITY:code+AUTHORITY:code".
+struct RegistryName {
+  std::string authority, code, vertical_authority, vertical_code;
+};
+
+std::pair<std::string, std::string> split(const std::string& text, char separator) {
+  const auto place = text.find(separator);
+  if (place == std::string::npos) return {text, ""};
+  return {text.substr(0, place), text.substr(place + 1)};
+}
+
+std::string upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+bool is_word(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '-'; });
+}
+
+std::optional<RegistryName> registry_name(const std::string& text) {
+  const auto [horizontal, vertical] = split(text, '+');
+  const auto [authority, code] = split(horizontal, ':');
+  RegistryName name{upper(authority), code, upper(authority), vertical};
+  if (vertical.find(':') != std::string::npos) std::tie(name.vertical_authority, name.vertical_code) = split(vertical, ':');
+  const bool compound_complete = text.find('+') == std::string::npos || (is_word(name.vertical_authority) && is_word(name.vertical_code));
+  if (!is_word(name.authority) || !is_word(name.code) || !compound_complete) return std::nullopt;
+  return name;
 }
 
 }  // namespace
@@ -119,25 +138,17 @@ std::string proj_definition(const std::string& given) {
   if (text.starts_with('{') || text.find('[') != std::string::npos) return text;
   const std::string start = lower(text);
   if (start.starts_with("urn:") || start.starts_with("http://") || start.starts_with("https://")) return text;
-  if (is_authority_and_code(text)) return text;
+  if (registry_name(text)) return text;
   throw CrsError("'" + text.substr(0, 80) + "' is no code of a coordinate reference system; give one such as EPSG:25832+7837, WKT, " +
                  "PROJJSON or a PROJ string");
 }
 
 ProjObject create_crs(const ProjContext& context, const std::string& definition) {
-  if (is_authority_and_code(definition)) {
-    const auto plus = definition.find('+');
-    const std::string first = definition.substr(0, plus);
-    ProjObject horizontal = registered(context, first);
-    if (horizontal && plus == std::string::npos) return horizontal;
-    if (horizontal) {
-      const std::string second = definition.substr(plus + 1);
-      const bool own_authority = second.find(':') != std::string::npos;
-      const ProjObject vertical = registered(context, own_authority ? second : first.substr(0, first.find(':') + 1) + second);
-      if (vertical) return compound(context, horizontal.get(), vertical.get());
-    }
-  }
-  return ProjObject(proj_create(context, definition.c_str()));
+  const auto name = registry_name(definition);
+  if (!name) return ProjObject(proj_create(context, definition.c_str()));
+  ProjObject horizontal = registered(context, name->authority, name->code);
+  if (name->vertical_code.empty()) return horizontal;
+  return compound(context, horizontal, registered(context, name->vertical_authority, name->vertical_code));
 }
 
 }  // namespace priormap
