@@ -15,7 +15,8 @@ OutlineInput read_input(const std::vector<std::string>& inputs, int threads, Dia
   const std::vector<HashedFile> files = distinct_files({inputs.begin(), inputs.end()});
   std::vector<std::filesystem::path> paths;
   for (const HashedFile& file : files) paths.push_back(file.path);
-  return {read_osm_footprints(paths, threads, diagnostics, events), files, Crs::parse("EPSG:4326"), "osm", "ODbL-1.0", "OpenStreetMap contributors"};
+  const std::vector<std::optional<Crs>> crs(files.size(), Crs::parse("EPSG:4326"));
+  return {read_osm_footprints(paths, threads, diagnostics, events), files, crs, "osm", "ODbL-1.0", "OpenStreetMap contributors"};
 }
 
 }  // namespace

@@ -35,20 +35,30 @@ InputCrs heights_of(const NamedRaster& raster, const InputCrs& outlines) {
   return {raster.crs.vertical() ? outlines.crs.horizontal().with_vertical(raster.crs) : raster.crs, "", raster.file};
 }
 
-Bounds2 bounds_of(const std::vector<Footprint>& footprints) {
+/// Of the footprints of each file, in its own CRS; without extent for a file without any.
+std::vector<Bounds2> bounds_by_file(const OutlineInput& input) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  Bounds2 bounds{infinity, infinity, -infinity, -infinity};
-  for (const Footprint& footprint : footprints)
+  std::vector<Bounds2> bounds(input.files.size(), {infinity, infinity, -infinity, -infinity});
+  for (const Footprint& footprint : input.footprints)
     for (const Ring2& ring : footprint.rings)
-      for (const Eigen::Vector2d& p : ring)
-        bounds = {std::min(bounds.min_x, p.x()), std::min(bounds.min_y, p.y()), std::max(bounds.max_x, p.x()), std::max(bounds.max_y, p.y())};
+      for (const Eigen::Vector2d& p : ring) {
+        Bounds2& b = bounds[footprint.file];
+        b = {std::min(b.min_x, p.x()), std::min(b.min_y, p.y()), std::max(b.max_x, p.x()), std::max(b.max_y, p.y())};
+      }
   return bounds;
 }
 
-LonLatArea lon_lat_area(const Bounds2& bounds, const Crs& crs) {
-  const Transformer to_lon_lat(crs.horizontal(), Crs::parse("EPSG:4326"));
-  const Eigen::Vector3d low = to_lon_lat.forward({bounds.min_x, bounds.min_y, 0}), high = to_lon_lat.forward({bounds.max_x, bounds.max_y, 0});
-  return {low.x(), low.y(), high.x(), high.y()};
+LonLatArea lon_lat_area(const std::vector<Bounds2>& bounds, const std::vector<InputCrs>& outlines) {
+  LonLatArea area{180, 90, -180, -90};
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    if (bounds[i].empty()) continue;
+    const Transformer to_lon_lat(outlines[i].crs.horizontal(), Crs::parse("EPSG:4326"));
+    for (const Eigen::Vector3d& corner : {to_lon_lat.forward({bounds[i].min_x, bounds[i].min_y, 0}), to_lon_lat.forward({bounds[i].max_x, bounds[i].max_y, 0})}) {
+      if (!corner.allFinite()) throw CrsError(outlines[i].file + ": its coordinates lie outside the domain of " + outlines[i].crs.name() + "; name the right CRS with --source-crs");
+      area = {std::min(area.west_deg, corner.x()), std::min(area.south_deg, corner.y()), std::max(area.east_deg, corner.x()), std::max(area.north_deg, corner.y())};
+    }
+  }
+  return area;
 }
 
 std::optional<Transformer> constant_to_prior(const InputCrs& outlines, const Crs& prior) {
@@ -64,15 +74,15 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
   if (!outline_options.heights_from.empty() && !ground_given)
     throw UsageError("--heights-from counts from the ground: give --terrain or --ground-height too");
 
-  const InputCrs outlines = resolve_input_crs(prior_options, input.crs, input.files.front().path.string());
-  const std::optional<NamedRaster> terrain = named_raster(outline_options.terrain, outlines), surface = named_raster(outline_options.heights_from, outlines);
+  std::vector<InputCrs> outlines;
+  for (std::size_t i = 0; i < input.files.size(); ++i) outlines.push_back(resolve_input_crs(prior_options, input.crs[i], input.files[i].path.string()));
+  const InputCrs& first = outlines.front();
+  const std::optional<NamedRaster> terrain = named_raster(outline_options.terrain, first), surface = named_raster(outline_options.heights_from, first);
   std::vector<InputCrs> with_heights;
-  if (terrain) with_heights.push_back(heights_of(*terrain, outlines));
-  else with_heights.push_back(outlines);
-  if (surface) with_heights.push_back(heights_of(*surface, outlines));
+  for (const InputCrs& outline : outlines) with_heights.push_back(terrain ? heights_of(*terrain, outline) : outline);
+  if (surface) with_heights.push_back(heights_of(*surface, first));
 
-  const Bounds2 bounds = bounds_of(input.footprints);
-  const LonLatArea area = lon_lat_area(bounds, outlines.crs);
+  const LonLatArea area = lon_lat_area(bounds_by_file(input), outlines);
   const GeoPoint middle{0.5 * (area.south_deg + area.north_deg), 0.5 * (area.west_deg + area.east_deg), 0};
   const Crs prior = resolve_prior_crs(prior_options, with_heights, middle, events);
   if (!ground_given) events.warn("the ground under the buildings is taken as 0 m; give --terrain or --ground-height");
@@ -81,8 +91,10 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
   if (terrain) terrain_heights = HeightRaster::open(terrain->file, terrain->override_crs, prior);
   if (surface) surface_heights = HeightRaster::open(surface->file, surface->override_crs, prior);
   const std::optional<double> constant_m = terrain ? outline_options.ground_height_m : std::optional(outline_options.ground_height_m.value_or(0));
-  return {Transformer(outlines.crs.horizontal(), prior.horizontal(), area), prior, outlines.assumed_vertical,
-          GroundModel(std::move(terrain_heights), constant_m, constant_to_prior(outlines, prior)), std::move(surface_heights)};
+  std::vector<Transformer> prior_from_outlines;
+  for (const InputCrs& outline : outlines) prior_from_outlines.emplace_back(outline.crs.horizontal(), prior.horizontal(), area);
+  return {std::move(prior_from_outlines), prior, first.assumed_vertical,
+          GroundModel(std::move(terrain_heights), constant_m, constant_to_prior(first, prior)), std::move(surface_heights)};
 }
 
 }  // namespace priormap

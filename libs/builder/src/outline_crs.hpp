@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <vector>
 
 #include <priormap/builder/ground_model.hpp>
 #include <priormap/builder/outline_options.hpp>
@@ -11,7 +12,7 @@ namespace priormap {
 
 /// Where outlines, ground and surface lie, and how they come into the prior's CRS. Copies are what a thread needs of its own.
 struct OutlineFrames {
-  Transformer prior_from_outlines;     ///< horizontal
+  std::vector<Transformer> prior_from_outlines;   ///< horizontal, by file
   Crs prior;
   std::string assumed_vertical;
   GroundModel ground;

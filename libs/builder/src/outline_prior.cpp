@@ -54,9 +54,9 @@ PriorSource source_of(const OutlineInput& input, std::size_t file, const Outline
   source.license = prior_options.license.empty() ? input.license : prior_options.license;
   source.attribution = prior_options.attribution.empty() ? input.attribution : prior_options.attribution;
   source.date = prior_options.date;
-  source.crs = frames.prior_from_outlines.source().name();
+  source.crs = frames.prior_from_outlines[file].source().name();
   source.assumed_vertical = frames.assumed_vertical;
-  source.operation = frames.prior_from_outlines.operation();
+  source.operation = frames.prior_from_outlines[file].operation();
   source.sigma_m = outline_options.sigma_m;
   return source;
 }

@@ -11,7 +11,7 @@
 namespace priormap {
 
 /// Into the prior's CRS, rings in order. Takes the footprints' rings.
-std::vector<ProjectedFootprint> project_footprints(std::vector<Footprint> footprints, const Transformer& prior_from_outlines, int threads,
+std::vector<ProjectedFootprint> project_footprints(std::vector<Footprint> footprints, const std::vector<Transformer>& prior_from_outlines, int threads,
                                                    Diagnostics& diagnostics);
 
 /// One outline or part as it stands: its blocks, and what features.geojsonl says of it.

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <priormap/tessellation/normalize.hpp>
 
 #include "chunks.hpp"
@@ -19,6 +21,16 @@ void transform(std::span<Footprint> footprints, const Transformer& transformer) 
   for (Footprint& footprint : footprints)
     for (Ring2& ring : footprint.rings)
       for (Eigen::Vector2d& p : ring) p = (next++)->head<2>();
+}
+
+void transform_by_file(std::span<Footprint> footprints, const std::vector<Transformer>& transformers) {
+  while (!footprints.empty()) {
+    const std::uint16_t file = footprints.front().file;
+    const auto other = std::ranges::find_if(footprints, [&](const Footprint& footprint) { return footprint.file != file; });
+    const auto count = static_cast<std::size_t>(other - footprints.begin());
+    transform(footprints.first(count), transformers[file]);
+    footprints = footprints.subspan(count);
+  }
 }
 
 bool is_finite(const std::vector<Ring2>& rings) {
@@ -47,14 +59,14 @@ ProjectedFootprint in_order(Footprint&& footprint, Diagnostics& diagnostics) {
 
 }  // namespace
 
-std::vector<ProjectedFootprint> project_footprints(std::vector<Footprint> footprints, const Transformer& prior_from_outlines, int threads,
+std::vector<ProjectedFootprint> project_footprints(std::vector<Footprint> footprints, const std::vector<Transformer>& prior_from_outlines, int threads,
                                                    Diagnostics& diagnostics) {
   std::vector<ProjectedFootprint> projected(footprints.size());
   std::vector<Diagnostics> of_chunk((footprints.size() + chunk_size - 1) / chunk_size);
   for_each_chunk(
       footprints.size(), chunk_size, threads, [&] { return prior_from_outlines; },
-      [&](const Transformer& transformer, std::size_t chunk, std::size_t begin, std::size_t end) {
-        transform(std::span(footprints).subspan(begin, end - begin), transformer);
+      [&](const std::vector<Transformer>& transformers, std::size_t chunk, std::size_t begin, std::size_t end) {
+        transform_by_file(std::span(footprints).subspan(begin, end - begin), transformers);
         for (std::size_t i = begin; i < end; ++i) projected[i] = in_order(std::move(footprints[i]), of_chunk[chunk]);
       });
   for (const Diagnostics& some : of_chunk) diagnostics.merge(some);

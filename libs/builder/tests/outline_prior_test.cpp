@@ -34,7 +34,7 @@ class OutlinePrior : public testing::Test {
   }
 
   OutlineReport build(std::vector<Footprint> footprints, const std::string& name = "prior", int threads = 2) {
-    OutlineInput input{std::move(footprints), {{folder_ / "town.txt", std::string(64, '0')}}, Crs::parse("EPSG:25832"), "footprints", "", ""};
+    OutlineInput input{std::move(footprints), {{folder_ / "town.txt", std::string(64, '0')}}, {Crs::parse("EPSG:25832")}, "footprints", "", ""};
     return build_outline_prior(std::move(input), options_, outline_options_, folder_ / name, Overwrite::refuse, "test", {}, threads, events_);
   }
 

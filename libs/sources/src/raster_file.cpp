@@ -10,43 +10,17 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <vector>
 
 #include <priormap/core/error.hpp>
 
+#include "gdal_support.hpp"
+
 namespace priormap {
 namespace {
 
-/// GDAL would take 5 % of the machine's memory.
-constexpr std::int64_t gdal_cache_bytes = 128 << 20;
 /// Nothing on Earth is this high: what is beyond is a void value that the file does not declare.
 constexpr double largest_height = 1e5;
-
-void register_gdal() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    GDALAllRegister();
-    if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr)) GDALSetCacheMax64(gdal_cache_bytes);
-  });
-}
-
-/// GDAL prints nothing while this lives.
-class QuietGdal {
- public:
-  QuietGdal() {
-    CPLPushErrorHandler(CPLQuietErrorHandler);
-    CPLErrorReset();
-  }
-  ~QuietGdal() { CPLPopErrorHandler(); }
-  QuietGdal(const QuietGdal&) = delete;
-  QuietGdal& operator=(const QuietGdal&) = delete;
-  static std::string message() {
-    std::string text = CPLGetLastErrorMsg();
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return text;
-  }
-};
 
 std::shared_ptr<GDALDataset> open_dataset(const std::string& name) {
   auto* dataset = GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY);
@@ -73,18 +47,6 @@ Eigen::Affine2d read_transform(GDALDataset& dataset, const std::filesystem::path
   transform.matrix() << t[1], t[2], t[0], t[4], t[5], t[3], 0, 0, 1;
   if (!transform.matrix().allFinite() || transform.linear().determinant() == 0) throw FormatError(file, "has a georeference without extent");
   return transform;
-}
-
-std::optional<Crs> read_crs(GDALDataset& dataset) {
-  const OGRSpatialReference* reference = dataset.GetSpatialRef();
-  if (!reference || reference->IsLocal()) return std::nullopt;
-  char* text = nullptr;
-  const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
-  const bool exported = reference->exportToWkt(&text, options) == OGRERR_NONE;
-  const std::string wkt = exported ? text : "";
-  CPLFree(text);
-  if (wkt.empty()) return std::nullopt;
-  return Crs::parse(wkt);
 }
 
 /// Metres per unit of undeclared heights that the band gives a unit.
@@ -125,7 +87,7 @@ RasterFile::RasterFile(const std::filesystem::path& file) : file_(file) {
   facts_.cell_x = world_from_cell_.linear().col(0).norm();
   facts_.cell_y = world_from_cell_.linear().col(1).norm();
   try {
-    facts_.crs = read_crs(*dataset_);
+    facts_.crs = crs_of(dataset_->GetSpatialRef());
   } catch (const CrsError& error) {
     throw CrsError(file.string() + ": " + error.what());
   }

@@ -10,6 +10,8 @@
 
 #include <priormap/core/error.hpp>
 
+#include "gdal_support.hpp"
+
 namespace priormap {
 namespace {
 
@@ -19,26 +21,15 @@ struct CloseDataset {
   void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
 };
 
-/// GDAL's messages are collected, not printed.
-struct QuietErrors {
-  QuietErrors() {
-    CPLPushErrorHandler(CPLQuietErrorHandler);
-    CPLErrorReset();
-  }
-  ~QuietErrors() { CPLPopErrorHandler(); }
-  QuietErrors(const QuietErrors&) = delete;
-  QuietErrors& operator=(const QuietErrors&) = delete;
-};
-
 [[noreturn]] void fail(const std::filesystem::path& file) {
-  throw IoError(file, std::string("cannot be written: ") + CPLGetLastErrorMsg());
+  throw IoError(file, "cannot be written: " + QuietGdal::message());
 }
 
 }  // namespace
 
 void write_geotiff(const std::filesystem::path& file, const HeightGrid& raster, const Crs& crs) {
   GDALRegister_GTiff();
-  const QuietErrors quiet;
+  const QuietGdal quiet;
 
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   CPLStringList creation;

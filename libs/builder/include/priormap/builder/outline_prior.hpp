@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,7 @@ std::vector<HashedFile> distinct_files(const std::vector<std::filesystem::path>&
 struct OutlineInput {
   std::vector<Footprint> footprints;            ///< `file` indexes `files`
   std::vector<HashedFile> files;                ///< each once
-  Crs crs;                                      ///< of the footprints, by the files' word
+  std::vector<std::optional<Crs>> crs;          ///< of the footprints, file by file, by the files' word; none: they declare none
   std::string kind;                             ///< "osm", "footprints"
   std::string license, attribution;             ///< where the user names none
 };

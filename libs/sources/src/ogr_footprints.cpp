@@ -1,0 +1,150 @@
+#include <priormap/sources/ogr_footprints.hpp>
+
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include <memory>
+
+#include <priormap/core/error.hpp>
+#include <priormap/sources/osm_tags.hpp>
+
+#include "gdal_support.hpp"
+
+namespace priormap {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CloseDataset {
+  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
+
+Dataset open_vector(const fs::path& file) {
+  std::error_code ignored;
+  const std::string name = file.string();
+  if (!name.starts_with("/vsi") && !fs::exists(file, ignored)) throw IoError(file, "no such file");
+  if (auto* dataset = GDALDataset::Open(name.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY)) return Dataset(dataset);
+  const std::string cause = QuietGdal::message();
+  throw FormatError(file, "is no vector file that GDAL reads" + (cause.empty() ? "" : " (" + cause + ")"));
+}
+
+bool may_hold_polygons(OGRLayer& layer) {
+  const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
+  return type == wkbUnknown || type == wkbGeometryCollection || OGR_GT_IsSubClassOf(type, wkbSurface) || OGR_GT_IsSubClassOf(type, wkbMultiSurface);
+}
+
+std::vector<OGRLayer*> chosen_layers(GDALDataset& dataset, const fs::path& file, const std::string& name) {
+  std::vector<OGRLayer*> layers;
+  if (!name.empty()) {
+    OGRLayer* layer = dataset.GetLayerByName(name.c_str());
+    if (!layer) throw FormatError(file, "has no layer '" + name + "'");
+    layers.push_back(layer);
+  } else {
+    for (int i = 0; i < dataset.GetLayerCount(); ++i)
+      if (OGRLayer* layer = dataset.GetLayer(i); may_hold_polygons(*layer)) layers.push_back(layer);
+  }
+  if (layers.empty()) throw FormatError(file, "has no layer with polygons");
+  return layers;
+}
+
+/// -1 for a field that nobody asked for.
+int field_index(OGRLayer& layer, const std::string& name, const fs::path& file) {
+  if (name.empty()) return -1;
+  OGRFeatureDefn& definition = *layer.GetLayerDefn();
+  const int index = definition.GetFieldIndex(name.c_str());
+  if (index >= 0) return index;
+  std::string known;
+  for (int i = 0; i < definition.GetFieldCount(); ++i) known += (i ? ", " : "") + std::string(definition.GetFieldDefn(i)->GetNameRef());
+  throw FormatError(file, "layer '" + std::string(layer.GetName()) + "' has no field '" + name + "'; it has: " + known);
+}
+
+/// Whether the layer's coordinates come north before east.
+bool north_comes_first(OGRLayer& layer, const Crs& crs) {
+  const std::vector<int>& axes = layer.GetSpatialRef()->GetDataAxisToSRSAxisMapping();
+  return axes.size() >= 2 && (axes[0] == 1) == crs.authority_north_first();
+}
+
+void add_ring(const OGRLinearRing* ring, bool swap_axes, std::vector<Ring2>& rings) {
+  if (!ring) return;
+  Ring2 points;
+  points.reserve(static_cast<std::size_t>(ring->getNumPoints()));
+  for (int i = 0; i < ring->getNumPoints(); ++i) {
+    const double x = ring->getX(i), y = ring->getY(i);
+    points.emplace_back(swap_axes ? y : x, swap_axes ? x : y);
+  }
+  rings.push_back(std::move(points));
+}
+
+/// Rings of all polygons, however deep in collections; the geometry must be free of curves.
+void add_rings(const OGRGeometry& geometry, bool swap_axes, std::vector<Ring2>& rings) {
+  const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
+  if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection)) {
+    for (const OGRGeometry* member : *geometry.toGeometryCollection()) add_rings(*member, swap_axes, rings);
+  } else if (OGR_GT_IsSubClassOf(type, wkbPolyhedralSurface)) {
+    for (const OGRPolygon* member : *geometry.toPolyhedralSurface()) add_rings(*member, swap_axes, rings);
+  } else if (OGR_GT_IsSubClassOf(type, wkbPolygon)) {
+    const OGRPolygon& polygon = *geometry.toPolygon();
+    add_ring(polygon.getExteriorRing(), swap_axes, rings);
+    for (int i = 0; i < polygon.getNumInteriorRings(); ++i) add_ring(polygon.getInteriorRing(i), swap_axes, rings);
+  }
+}
+
+/// A value of a field as a mapper's tag would give it; nullopt where the field is empty, or holds no such thing.
+std::optional<double> read_value(OGRFeature& feature, int field, std::optional<double> (*parse)(std::string_view), const std::string& id, Diagnostics& diagnostics) {
+  if (field < 0 || !feature.IsFieldSetAndNotNull(field)) return std::nullopt;
+  const std::string text = feature.GetFieldAsString(field);
+  if (text.empty()) return std::nullopt;
+  const std::optional<double> value = parse(text);
+  if (value && *value > 0 && *value <= 1000) return value;
+  diagnostics.add(DiagnosticCode::unusable_height, id, std::string(feature.GetFieldDefnRef(field)->GetNameRef()) + "=" + text + " cannot be used");
+  return std::nullopt;
+}
+
+struct LayerFields {
+  int height, levels, id;
+};
+
+std::optional<Footprint> read_feature(OGRFeature& feature, OGRLayer& layer, const LayerFields& fields, bool swap_axes, Diagnostics& diagnostics) {
+  Footprint footprint;
+  const bool named = fields.id >= 0 && feature.IsFieldSetAndNotNull(fields.id);
+  footprint.id = std::string(layer.GetName()) + "/" + (named ? feature.GetFieldAsString(fields.id) : std::to_string(feature.GetFID()));
+  if (const OGRGeometry* geometry = feature.GetGeometryRef()) {
+    const std::unique_ptr<OGRGeometry> straight(geometry->getLinearGeometry());
+    if (straight) add_rings(*straight, swap_axes, footprint.rings);
+  }
+  if (footprint.rings.empty()) {
+    diagnostics.add(DiagnosticCode::too_few_points, footprint.id, "has no polygon; left out");
+    return std::nullopt;
+  }
+  footprint.attributes.height_m = read_value(feature, fields.height, parse_length_m, footprint.id, diagnostics);
+  footprint.attributes.levels = read_value(feature, fields.levels, parse_storeys, footprint.id, diagnostics);
+  return footprint;
+}
+
+void read_layer(OGRLayer& layer, const fs::path& file, const FootprintFields& names, FootprintLayers& result, Diagnostics& diagnostics) {
+  const LayerFields fields{field_index(layer, names.height, file), field_index(layer, names.levels, file), field_index(layer, names.id, file)};
+  const std::optional<Crs> crs = crs_of(layer.GetSpatialRef());
+  if (!result.crs && result.footprints.empty() && crs) result.crs = crs->horizontal();
+  const bool same = crs ? result.crs && result.crs->equivalent_to(crs->horizontal()) : !result.crs;
+  if (!same) throw CrsError(file.string() + ": its layers differ in their CRS; choose one with --layer");
+
+  const bool swap_axes = crs && north_comes_first(layer, *crs);
+  layer.ResetReading();
+  while (const std::unique_ptr<OGRFeature> feature{layer.GetNextFeature()})
+    if (std::optional<Footprint> footprint = read_feature(*feature, layer, fields, swap_axes, diagnostics)) result.footprints.push_back(std::move(*footprint));
+  if (CPLGetLastErrorType() >= CE_Failure) throw FormatError(file, "cannot be read to its end: " + QuietGdal::message());
+}
+
+}  // namespace
+
+FootprintLayers read_ogr_footprints(const fs::path& file, const FootprintFields& fields, Diagnostics& diagnostics) {
+  register_gdal();
+  const QuietGdal quiet;
+  const Dataset dataset = open_vector(file);
+  FootprintLayers result;
+  for (OGRLayer* layer : chosen_layers(*dataset, file, fields.layer)) read_layer(*layer, file, fields, result, diagnostics);
+  return result;
+}
+
+}  // namespace priormap

@@ -1,0 +1,126 @@
+#include <gdal_priv.h>
+#include <gdal_utils.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <priormap/core/error.hpp>
+#include <priormap/sources/ogr_footprints.hpp>
+#include <priormap/tessellation/normalize.hpp>
+
+namespace priormap {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OgrFootprints : public testing::Test {
+ protected:
+  OgrFootprints() : folder_(fs::path(testing::TempDir()) / (std::string("ogr_") + testing::UnitTest::GetInstance()->current_test_info()->name())) { fs::create_directories(folder_); }
+  ~OgrFootprints() override { fs::remove_all(folder_); }
+  fs::path write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  fs::path write_features(const std::string& features) {
+    return write("town.geojson", R"({"type":"FeatureCollection","name":"town","features":[)" + features + "]}");
+  }
+  static std::string feature(const std::string& properties, const std::string& geometry) {
+    return R"({"type":"Feature","properties":{)" + properties + R"(},"geometry":)" + geometry + "}";
+  }
+  fs::path folder_;
+  Diagnostics diagnostics_;
+};
+
+const std::string square = R"({"type":"Polygon","coordinates":[[[11,48],[11.001,48],[11.001,48.001],[11,48.001],[11,48]]]})";
+const std::string two_squares = R"({"type":"MultiPolygon","coordinates":[[[[11,48],[11.001,48],[11.001,48.001],[11,48]],[[11.0005,48.0001],[11.0006,48.0001],[11.0006,48.0002],[11.0005,48.0001]]],
+  [[[12,48],[12.001,48],[12.001,48.001],[12,48]]]]})";
+
+TEST_F(OgrFootprints, PolygonsWithHeightsAndLevels) {
+  const fs::path file = write_features(feature(R"("h":12.5,"storeys":3,"key":"A7")", square) + "," + feature(R"("h":null,"storeys":0,"key":null)", two_squares));
+  const FootprintLayers layers = read_ogr_footprints(file, {"", "h", "storeys", ""}, diagnostics_);
+  ASSERT_EQ(layers.footprints.size(), 2u);
+  ASSERT_TRUE(layers.crs);
+  EXPECT_TRUE(layers.crs->is_geographic());
+  EXPECT_EQ(layers.footprints[0].id, "town/0");
+  EXPECT_EQ(layers.footprints[0].attributes.height_m, 12.5);
+  EXPECT_EQ(layers.footprints[0].attributes.levels, 3);
+  EXPECT_EQ(layers.footprints[0].rings[0][1], Eigen::Vector2d(11.001, 48)) << "east before north";
+  EXPECT_EQ(layers.footprints[1].rings.size(), 3u);
+  EXPECT_FALSE(layers.footprints[1].attributes.height_m);
+  EXPECT_FALSE(layers.footprints[1].attributes.levels);
+  EXPECT_EQ(diagnostics_.counts().at(DiagnosticCode::unusable_height), 1u) << "no storeys at all is no count of them";
+  EXPECT_EQ(read_ogr_footprints(file, {"", "", "", "key"}, diagnostics_).footprints[0].id, "town/A7");
+}
+
+TEST_F(OgrFootprints, HeightsAsTextCarryTheirUnits) {
+  const fs::path file = write_features(feature(R"("h":"30 ft")", square) + "," + feature(R"("h":"unknown")", square));
+  const FootprintLayers layers = read_ogr_footprints(file, {"", "h", "", ""}, diagnostics_);
+  EXPECT_NEAR(*layers.footprints[0].attributes.height_m, 9.144, 1e-9);
+  EXPECT_FALSE(layers.footprints[1].attributes.height_m);
+  EXPECT_EQ(diagnostics_.total(), 1u);
+}
+
+TEST_F(OgrFootprints, WhatIsNoPolygonIsCounted) {
+  const fs::path file = write_features(feature("", square) + "," + feature("", R"({"type":"Point","coordinates":[11,48]})") + "," + feature("", "null"));
+  EXPECT_EQ(read_ogr_footprints(file, {}, diagnostics_).footprints.size(), 1u);
+  EXPECT_EQ(diagnostics_.counts().at(DiagnosticCode::too_few_points), 2u);
+}
+
+TEST_F(OgrFootprints, UnusableFilesAreNamed) {
+  EXPECT_THROW(read_ogr_footprints(folder_ / "absent.gpkg", {}, diagnostics_), IoError);
+  EXPECT_THROW(read_ogr_footprints(write("text.shp", "no shapes"), {}, diagnostics_), FormatError);
+  EXPECT_THROW(read_ogr_footprints(write("cut.geojson", R"({"type":"FeatureCollection","features":[{"type":"Fea)"), {}, diagnostics_), FormatError);
+  const fs::path points = write_features(feature("", R"({"type":"Point","coordinates":[11,48]})"));
+  EXPECT_THROW(read_ogr_footprints(points, {}, diagnostics_), FormatError);
+  const fs::path file = write_features(feature(R"("h":3)", square));
+  EXPECT_THROW(read_ogr_footprints(file, {"other", "", "", ""}, diagnostics_), FormatError);
+  try {
+    read_ogr_footprints(file, {"", "height", "", ""}, diagnostics_);
+    ADD_FAILURE();
+  } catch (const FormatError& error) {
+    EXPECT_NE(std::string(error.what()).find("it has: h"), std::string::npos) << error.what();
+  }
+}
+
+/// GDAL itself writes what is read back.
+TEST_F(OgrFootprints, EveryFormatGivesTheSameOutlines) {
+  const fs::path file = write_features(feature(R"("h":12.5)", square) + "," + feature(R"("h":7)", two_squares));
+  const std::vector<Footprint> expected = read_ogr_footprints(file, {"", "h", "", ""}, diagnostics_).footprints;
+  for (const char* name : {"town.gpkg", "town.shp", "town.fgb"}) {
+    auto* source = GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR);
+    GDALDatasetH handle = source;
+    GDALClose(GDALVectorTranslate((folder_ / name).c_str(), nullptr, 1, &handle, nullptr, nullptr));
+    GDALClose(source);
+    const FootprintLayers layers = read_ogr_footprints(folder_ / name, {"", "h", "", ""}, diagnostics_);
+    ASSERT_TRUE(layers.crs) << name;
+    std::vector<Footprint> found = layers.footprints;
+    ASSERT_EQ(found.size(), 2u) << name;
+    std::ranges::sort(found, {}, [](const Footprint& f) { return -*f.attributes.height_m; });  // FlatGeobuf orders by place
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(found[i].attributes.height_m, expected[i].attributes.height_m);
+      ASSERT_EQ(found[i].rings.size(), expected[i].rings.size()) << name;
+      double found_area = 0, expected_area = 0;
+      for (const Ring2& ring : found[i].rings) found_area += std::abs(signed_area(ring));
+      for (const Ring2& ring : expected[i].rings) expected_area += std::abs(signed_area(ring));
+      EXPECT_NEAR(found_area, expected_area, 1e-15) << name;
+    }
+  }
+}
+
+TEST_F(OgrFootprints, TheFootprintsOfGothenburg) {
+  const char* given = std::getenv("PRIORMAP_SHARED_DATA");
+  const fs::path shared = given ? fs::path(given) : fs::path(PRIORMAP_SOURCE_DIR) / "../shared/data";
+  const fs::path file = shared / "overlap_gothenburg/gvc_footprints.shp";
+  if (!fs::exists(file)) GTEST_SKIP() << "the real inputs are absent";
+  const FootprintLayers layers = read_ogr_footprints(file, {}, diagnostics_);
+  EXPECT_EQ(layers.footprints.size(), 119u);
+  ASSERT_TRUE(layers.crs);
+  EXPECT_TRUE(layers.crs->equivalent_to(Crs::parse("EPSG:3006")));
+  double size = 0;
+  for (const Footprint& footprint : layers.footprints)
+    for (const Polygon2& polygon : normalize(footprint.rings, footprint.id, diagnostics_)) size += area(polygon);
+  EXPECT_NEAR(size, 43000, 25000);
+  EXPECT_EQ(diagnostics_.total(), 0u);
+}
+
+}  // namespace
+}  // namespace priormap
