@@ -5,6 +5,7 @@
 #include <pcl/io/ply_io.h>
 #include <pcl/point_types.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -200,6 +201,19 @@ TEST(PointFormats, what_a_header_promises_is_checked_before_memory_is_taken) {
     write_text(folder / "a.ply", "ply\nformat " + std::string(format) +
                                      " 1.0\nelement vertex 2000000000\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n");
     EXPECT_NE(message_of([&] { read_point_cloud(folder / "a.ply"); }).find("promises 2000000000"), std::string::npos) << format;
+  }
+}
+
+TEST(PointFormats, compressed_points_that_claim_another_size_are_refused) {
+  const TemporaryFolder folder;
+  const std::string head = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA binary_compressed\n";
+  const auto words = [](std::uint32_t packed, std::uint32_t unpacked) {
+    const std::array<std::uint32_t, 2> sizes = {packed, unpacked};
+    return std::string(reinterpret_cast<const char*>(sizes.data()), sizeof sizes);
+  };
+  for (const std::string& sizes : {words(13, 4000000000u), words(4000000000u, 12), words(0, 12), std::string("abc")}) {
+    write_text(folder / "a.pcd", head + sizes + std::string(13, '\0'));
+    EXPECT_THROW(read_point_cloud(folder / "a.pcd"), FormatError);
   }
 }
 

@@ -3,12 +3,16 @@
 #include <map>
 #include <set>
 
+#include <array>
+#include <span>
+
 #include <priormap/core/error.hpp>
 
 #include "formats/header_lines.hpp"
 #include "formats/named_columns.hpp"
 #include "formats/pcl_rows.hpp"
 #include "formats/point_format.hpp"
+#include "formats/read_only_file.hpp"
 #include "formats/text_rows.hpp"
 
 namespace priormap {
@@ -72,6 +76,18 @@ PcdPromise parse_promise(const HeaderLines& header, const std::filesystem::path&
   return promise;
 }
 
+/// Before compressed points stand their size as packed and unpacked, two words that PCL believes.
+void check_packed_size(const std::filesystem::path& file, const HeaderLines& header, const PcdPromise& promise) {
+  if (promise.num_points == 0) return;
+  std::array<std::uint32_t, 2> sizes{};
+  if (header.file_size - header.size >= sizeof sizes) ReadOnlyFile(file).read(header.size, std::as_writable_bytes(std::span(sizes)));
+  const auto [packed, unpacked] = sizes;
+  if (packed == 0 || packed > header.file_size - header.size - sizeof sizes)
+    throw FormatError(file, "is cut off: it holds fewer compressed bytes than it promises");
+  if (unpacked != promise.num_points * promise.point_size)
+    throw FormatError(file, "is no usable PCD: its compressed points are not as large as its header says");
+}
+
 /// PCL allocates what the header promises: refuse what the file has no room for.
 void check_promise(const std::filesystem::path& file) {
   const HeaderLines header = read_header_lines(file, "DATA");
@@ -84,6 +100,7 @@ void check_promise(const std::filesystem::path& file) {
   else throw FormatError(file, "is no usable PCD: DATA '" + promise.encoding + "' is unknown");
   if (promise.num_points > room)
     throw FormatError(file, "is cut off: its header promises " + std::to_string(promise.num_points) + " points, more than the file has room for");
+  if (promise.encoding == "binary_compressed") check_packed_size(file, header, promise);
 }
 
 }  // namespace
