@@ -17,7 +17,7 @@ mkdir -p "$out"
 munich_moosach() {
   local town=$data/osm/munich_moosach.osm
   say "Munich-Moosach: a drive of ${1} scans through the buildings of OpenStreetMap"
-  drivesim --town "$town" --scans "$1" --seed 7 -o "$out/moosach/drive"
+  drivesim --town "$town" --origin-height 510 --scans "$1" --seed 7 -o "$out/moosach/drive"
   local crs
   crs=$(drive_crs "$out/moosach/drive")
   osm2prior "$town" --crs "$crs" --terrain "$out/moosach/drive/sources/dtm.tif" -o "$out/moosach/prior-osm"
