@@ -66,6 +66,17 @@ BENCHMARK_CAPTURE(align, joint_avx512, InstructionSet::avx512, true, true)->Unit
 BENCHMARK_CAPTURE(align, prior_only, InstructionSet::best, true, false)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(align, local_only, InstructionSet::best, false, true)->Unit(benchmark::kMicrosecond);
 
+void search_pose(benchmark::State& state) {
+  const Fixture& f = fixture();
+  const SurfelCloud scan = ScanReducer(1.0).reduce(f.scan);
+  const JointTarget target{&f.prior};
+  JointRegistration registration;
+  JointResult result;
+  for (auto _ : state) result = registration.search(scan, {&target, 1}, f.truth * street::pose(4, 3, 0.3, 0.175));
+  state.counters["error_mm"] = 1000 * street::distance(result.T_map_scan, f.truth);
+}
+BENCHMARK(search_pose)->Unit(benchmark::kMillisecond);
+
 /// All surfels of a scan look for their nearest, a decimetre off.
 void find_nearest(benchmark::State& state, InstructionSet set, const SurfelMap& map) {
   if (!is_available(set)) return state.SkipWithError("not on this processor");

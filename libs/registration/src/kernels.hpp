@@ -61,9 +61,9 @@ struct Table {
                        std::size_t count, const Nearest& out);
   /// Squared residual over its variance; -1 where there is no correspondence. x, y, z as from transform.
   void (*whitened)(const Pose& pose, const Source& source, const Correspondences& c, const float* x, const float* y, const float* z, float* out);
-  /// Adds up the normal equations with Geman-McClure weights of squared width `width2` on the whitened squares.
+  /// Adds up the normal equations with Geman-McClure weights of squared width `width2` on the whitened squares; below `inlier_width2` they count as inliers.
   void (*accumulate)(const Pose& pose, const Source& source, const Correspondences& c, const float* x, const float* y, const float* z, float width2,
-                     Sums& sums);
+                     float inlier_width2, Sums& sums);
 };
 
 extern const Table portable;

@@ -161,7 +161,7 @@ void whitened(const Pose& pose, const Source& source, const Correspondences& c, 
 }
 
 void accumulate(const Pose& pose, const Source& source, const Correspondences& c, const float* x, const float* y, const float* z, float width2,
-                Sums& sums) {
+                float inlier_width2, Sums& sums) {
   constexpr int terms = 30;  // H, g, and the three counts
   float lane_sums[terms][group];
   for (std::size_t part = 0; part < group; part += LANES) {
@@ -190,7 +190,7 @@ void accumulate(const Pose& pose, const Source& source, const Correspondences& c
       const vfloat fx = e * r.nx + a * r.dx, fy = e * r.ny + a * r.dy, fz = e * r.nz + a * r.dz;
       s[21] += py * fz - pz * fy, s[22] += pz * fx - px * fz, s[23] += px * fy - py * fx;
       s[24] += fx, s[25] += fy, s[26] += fz;
-      const vint inlier = used & (u2 < width2);
+      const vint inlier = used & (u2 < inlier_width2);
       s[27] += used ? all(1.0f) : all(0.0f);
       s[28] += inlier ? all(1.0f) : all(0.0f);
       s[29] += inlier ? r.squared : all(0.0f);

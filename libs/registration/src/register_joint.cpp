@@ -19,15 +19,16 @@ struct SourceColumns {
   std::array<std::vector<float>, 10> columns;  // x y z, covariance, variance
   std::size_t count = 0;
 
-  void assign(const SurfelCloud& scan, double point_sigma_m) {
-    count = scan.size();
+  /// Every `stride`-th surfel.
+  void assign(const SurfelCloud& scan, double point_sigma_m, std::size_t stride = 1) {
+    count = (scan.size() + stride - 1) / stride;
     const std::size_t padded = (count + lanes - 1) / lanes * lanes;
     for (auto& column : columns) column.assign(padded, 0.0f);
     std::fill(columns[9].begin(), columns[9].end(), 1.0f);  // keeps the padding finite
     const Eigen::Vector3f origin = scan.origin.cast<float>();
     const auto variance = float(point_sigma_m * point_sigma_m);
     for (std::size_t i = 0; i < count; ++i) {
-      const Surfel& s = scan.surfels[i];
+      const Surfel& s = scan.surfels[i * stride];
       for (std::size_t a = 0; a < 3; ++a) columns[a][i] = origin[Eigen::Index(a)] + s.mean[Eigen::Index(a)];
       for (std::size_t a = 0; a < 6; ++a) columns[3 + a][i] = s.covariance[Eigen::Index(a)];
       columns[9][i] = variance * (1.0f + 4.0f / s.count);  // the spread of a few points is not known from them
@@ -92,20 +93,39 @@ class TargetState {
     for (auto* squares : {&squared_, &second_squared_}) squares->resize(count);
   }
 
-  Linearization linearize(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T, const JointOptions& options) {
+  Linearization linearize(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T, const JointOptions& options,
+                          double least_scale) {
     const kernels::Pose pose = kernel_pose(T, view_->corner(anchor_));
     table.transform(pose, source, data(x), data(y), data(z));
     search(table, options);
     const kernels::Correspondences c = correspondences();
     table.whitened(pose, source, c, data(x), data(y), data(z), data(whitened));
-    const double scale = robust_scale(options);
+    const double scale = std::max(least_scale, robust_scale());
     kernels::Sums sums;
-    table.accumulate(pose, source, c, data(x), data(y), data(z), float(std::pow(options.kernel_width * scale, 2)), sums);
+    table.accumulate(pose, source, c, data(x), data(y), data(z), float(std::pow(options.kernel_width * scale, 2)),
+                     float(std::pow(options.kernel_width, 2)), sums);
     Linearization out = from_sums(sums, T.linear());
     out.scale = scale;
-    out.H *= target_.weight / (scale * scale);
-    out.g *= target_.weight / (scale * scale);
+    const double weight = target_.weight / std::pow(std::max(1.0, scale), 2);
+    out.H *= weight;
+    out.g *= weight;
     return out;
+  }
+
+  /// Sum over the surfels that have a match: a little for one that fits, much off for one that does not. Where a scan meets the trace of another, as it does
+  /// where it stood still, more find a match; that alone must not win.
+  double score(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T, const JointOptions& options) {
+    const kernels::Pose pose = kernel_pose(T, view_->corner(anchor_));
+    table.transform(pose, source, data(x), data(y), data(z));
+    std::fill(gap2_.begin(), gap2_.end(), -1.0f);
+    search(table, options);
+    table.whitened(pose, source, correspondences(), data(x), data(y), data(z), data(whitened));
+    const double width2 = options.kernel_width * options.kernel_width;
+    constexpr double par = 0.85;
+    double sum = 0;
+    for (std::size_t i = 0; i < count_; ++i)
+      if (columns_[whitened][i] >= 0) sum += width2 / (width2 + double(columns_[whitened][i])) - par;
+    return target_.weight * sum;
   }
 
  private:
@@ -151,15 +171,15 @@ class TargetState {
   }
 
   /// 1.4826 times the median of the whitened residuals, from at most some thousand of them.
-  double robust_scale(const JointOptions& options) {
+  double robust_scale() {
     const std::size_t stride = std::max<std::size_t>(1, count_ / 1024);
     sample_.clear();
     for (std::size_t i = 0; i < count_; i += stride)
       if (columns_[whitened][i] >= 0) sample_.push_back(columns_[whitened][i]);
-    if (sample_.empty()) return options.min_scale;
+    if (sample_.empty()) return 0.0;
     const auto middle = sample_.begin() + std::ptrdiff_t(sample_.size() / 2);
     std::nth_element(sample_.begin(), middle, sample_.end());
-    return std::max(options.min_scale, 1.4826 * std::sqrt(double(*middle)));
+    return 1.4826 * std::sqrt(double(*middle));
   }
 
   JointTarget target_;
@@ -208,6 +228,13 @@ struct JointRegistration::Workspace {
   const kernels::Table* table;
   SourceColumns source;
   std::vector<TargetState> targets;
+
+  void prepare(const SurfelCloud& scan, std::span<const JointTarget> wanted, const Eigen::Isometry3d& guess, const JointOptions& options,
+               std::size_t stride) {
+    source.assign(scan, options.point_sigma_m, stride);
+    targets.resize(wanted.size());
+    for (std::size_t t = 0; t < wanted.size(); ++t) targets[t].begin(wanted[t], source.count, source.view().padded, guess);
+  }
 };
 
 JointRegistration::JointRegistration(const JointOptions& options, InstructionSet set)
@@ -222,10 +249,8 @@ JointRegistration& JointRegistration::operator=(JointRegistration&&) noexcept = 
 JointResult JointRegistration::align(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess,
                                      const std::optional<PosePrior>& prior) {
   Workspace& w = *workspace_;
-  w.source.assign(scan, options_.point_sigma_m);
+  w.prepare(scan, targets, guess, options_, 1);
   const kernels::Source source = w.source.view();
-  w.targets.resize(targets.size());
-  for (std::size_t t = 0; t < targets.size(); ++t) w.targets[t].begin(targets[t], source.count, source.padded, guess);
 
   JointResult result;
   result.T_map_scan = guess;
@@ -234,8 +259,9 @@ JointResult JointRegistration::align(const SurfelCloud& scan, std::span<const Jo
   while (!result.converged && result.iterations < options_.max_iterations) {
     Matrix6d H = Matrix6d::Zero();
     Vector6d g = Vector6d::Zero();
+    const double least_scale = std::max(options_.min_scale, options_.start_scale * std::pow(0.5, result.iterations));
     for (std::size_t t = 0; t < targets.size(); ++t) {
-      parts[t] = w.targets[t].linearize(*w.table, source, result.T_map_scan, options_);
+      parts[t] = w.targets[t].linearize(*w.table, source, result.T_map_scan, options_, least_scale);
       H += parts[t].H;
       g += parts[t].g;
     }
@@ -247,11 +273,49 @@ JointResult JointRegistration::align(const SurfelCloud& scan, std::span<const Jo
     step = step_within_observed(H, g, 1e-7);
     if (step.isZero(0)) break;
     result.T_map_scan = retract(result.T_map_scan, step);
-    result.converged = step.tail<3>().norm() < options_.translation_epsilon_m && step.head<3>().norm() < options_.rotation_epsilon_rad;
+    result.converged = least_scale == options_.min_scale && step.tail<3>().norm() < options_.translation_epsilon_m && step.head<3>().norm() < options_.rotation_epsilon_rad;
     ++result.iterations;
   }
   for (const Linearization& part : parts) result.targets.push_back(result_of(part, result.T_map_scan, step));
   return result;
+}
+
+double JointRegistration::score(const Eigen::Isometry3d& T_map_scan) {
+  double sum = 0;
+  for (TargetState& target : workspace_->targets) sum += target.score(*workspace_->table, workspace_->source.view(), T_map_scan, options_);
+  return sum;
+}
+
+JointResult JointRegistration::search(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess,
+                                      const PoseSearchOptions& search) {
+  std::vector<JointTarget> blurred(targets.begin(), targets.end());
+  for (JointTarget& target : blurred) target.sigma_m = std::hypot(target.sigma_m, search.sigma_m);
+  const std::size_t stride = std::max<std::size_t>(1, scan.size() / std::size_t(search.surfels));
+
+  struct Start {
+    double score;
+    Eigen::Isometry3d T;
+  };
+  std::vector<Start> starts;
+  workspace_->prepare(scan, blurred, guess, options_, stride);
+  const int steps = int(search.radius_m / search.step_m), turns = int(search.yaw_rad / search.step_rad);
+  for (int turn = -turns; turn <= turns; ++turn)
+    for (int i = -steps; i <= steps; ++i)
+      for (int j = -steps; j <= steps; ++j) {
+        Eigen::Isometry3d T = guess;
+        T.linear() = Eigen::AngleAxisd(turn * search.step_rad, Eigen::Vector3d::UnitZ()) * guess.linear();
+        T.translation() += search.step_m * Eigen::Vector3d(i, j, 0);
+        starts.push_back({score(T), T});
+      }
+  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.score > b.score; });
+  starts.resize(std::min(starts.size(), std::size_t(search.refined)));
+
+  std::vector<JointResult> found;
+  for (const Start& start : starts) found.push_back(align(scan, targets, start.T));
+  workspace_->prepare(scan, targets, guess, options_, 1);
+  std::vector<double> scores;
+  for (const JointResult& result : found) scores.push_back(score(result.T_map_scan));
+  return found[std::size_t(std::max_element(scores.begin(), scores.end()) - scores.begin())];
 }
 
 }  // namespace priormap

@@ -13,20 +13,36 @@ namespace {
 
 const Eigen::Vector3d far_origin(21000, -9000, 116);
 
-TEST(JointRegistration, FindsThePoseWithinAMillimetreOfAnExactPrior) {
+/// A scan within a town and the prior of that town.
+class JointRegistrationTest : public testing::Test {
+ protected:
   const street::World world = street::town(100, 3, far_origin);
-  SurfelMap prior;
-  prior.insert(street::sample(world, 0.5, 0.0f));
   const Eigen::Isometry3d truth = street::pose(far_origin.x() + 50, far_origin.y() + 1, far_origin.z() + 1.8, 0.1);
-  const SurfelCloud scan = ScanReducer(1.0).reduce(street::scan(world, truth, {.noise_m = 0}, 1));
-  const JointTarget target{&prior};
+  SurfelMap prior;
   JointRegistration registration;
+  void SetUp() override { prior.insert(street::sample(world, 0.5, 0.0f)); }
+  SurfelCloud scan(double noise_m) const { return ScanReducer(1.0).reduce(street::scan(world, truth, {.noise_m = noise_m}, 1)); }
+};
+
+TEST_F(JointRegistrationTest, FindsThePoseWithinAMillimetreWithoutNoise) {
+  const JointTarget target{&prior};
   for (const auto& off : {street::pose(0.5, 0.3, 0.1, 0.035), street::pose(-0.4, -0.5, -0.2, -0.035)}) {
-    const JointResult result = registration.align(scan, {&target, 1}, truth * off);
+    const JointResult result = registration.align(scan(0), {&target, 1}, truth * off);
+    EXPECT_TRUE(result.converged);
+    EXPECT_LT(street::distance(result.T_map_scan, truth), 1e-3);
+    EXPECT_LT(street::angle(result.T_map_scan, truth), 1e-4);
+    EXPECT_GT(result.targets[0].inlier_share(), 0.99);
+  }
+}
+
+TEST_F(JointRegistrationTest, FindsThePoseFromFiveMetresAndTenDegreesOff) {
+  const JointTarget target{&prior};
+  const SurfelCloud noisy = scan(0.02);
+  for (const auto& off : {street::pose(4, 3, 0.3, 0.175), street::pose(-4.9, 1, -0.3, -0.175), street::pose(0, -5, 0, 0.175)}) {
+    const JointResult result = registration.search(noisy, {&target, 1}, truth * off);
     EXPECT_TRUE(result.converged);
     EXPECT_LT(street::distance(result.T_map_scan, truth), 0.01);
     EXPECT_LT(street::angle(result.T_map_scan, truth), 5e-4);
-    EXPECT_GT(result.targets[0].inlier_share(), 0.7);
   }
 }
 

@@ -22,7 +22,8 @@ struct JointOptions {
   double max_distance_m = 2.0;
   double kernel_width = 3.0;
   double point_sigma_m = 0.03;
-  double min_scale = 1.0;
+  double start_scale = 4.0;
+  double min_scale = 0.15;
   int max_iterations = 30;
   double translation_epsilon_m = 5e-4;
   double rotation_epsilon_rad = 2e-5;
@@ -32,11 +33,23 @@ struct JointOptions {
     visit("joint-max-distance", max_distance_m, {"correspondences farther apart are dropped", "m", 0.01, 100});
     visit("joint-kernel-width", kernel_width, {"width of the Geman-McClure kernel, in robust standard deviations of the residuals", "", 0.5, 100});
     visit("point-sigma", point_sigma_m, {"standard deviation of a scan's points along the normal", "m", 1e-3, 10});
+    visit("start-scale", start_scale, {"least scale at the first step, halved with each step down to min-scale", "", 0.01, 1000});
     visit("min-scale", min_scale, {"least robust standard deviation of the whitened residuals", "", 0.01, 100});
     visit("joint-iterations", max_iterations, {"most Gauss-Newton steps of one registration", "", 1, 1000});
     visit("joint-translation-epsilon", translation_epsilon_m, {"a step shorter than this and turning less than joint-rotation-epsilon ends it", "m", 1e-9, 1});
     visit("joint-rotation-epsilon", rotation_epsilon_rad, {"see joint-translation-epsilon", "rad", 1e-9, 1});
   }
+};
+
+/// Where to look for a pose that is badly known: a grid of starts around the guess, over x and y of the map and the yaw about its z axis.
+struct PoseSearchOptions {
+  double radius_m = 6.0;
+  double yaw_rad = 0.21;
+  double step_m = 1.0;
+  double step_rad = 0.035;
+  double sigma_m = 0.3;      ///< of the residuals while starts are compared
+  int surfels = 400;         ///< of the scan, for comparing starts
+  int refined = 8;           ///< best starts that are registered
 };
 
 /// What is known of the pose beforehand; `information` with the tangent of `retract` at T.
@@ -48,10 +61,10 @@ struct PosePrior {
 /// The part of one target in a joint registration, at the pose returned.
 struct TargetResult {
   std::size_t num_correspondences = 0;
-  std::size_t num_inliers = 0;               ///< whitened residual below kernel_width times scale
+  std::size_t num_inliers = 0;               ///< whitened residual below kernel_width: what the stated sigmas explain
   double inlier_rmse_m = 0;
-  double scale = 0;                          ///< robust standard deviation of the whitened residuals, at least min_scale
-  Matrix6d information = Matrix6d::Zero();   ///< J^T W J of this target alone, divided by scale^2 and times its weight
+  double scale = 0;                          ///< robust standard deviation of the whitened residuals, at least min_scale; above 1: more than stated
+  Matrix6d information = Matrix6d::Zero();   ///< J^T W J of this target alone, divided by scale^2 where that is above 1, and times its weight
   Vector6d gradient = Vector6d::Zero();      ///< of half the cost: what this target alone would move is -information^-1 gradient
   /// The pose that this target alone prefers, to first order: with `information` it makes a factor of a pose graph. Directions that it does not observe stay at the joint pose.
   Eigen::Isometry3d T_map_scan = Eigen::Isometry3d::Identity();
@@ -83,8 +96,13 @@ class JointRegistration {
   JointResult align(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess,
                     const std::optional<PosePrior>& prior = std::nullopt);
 
+  /// The best registration from a grid of starts (correlative scan matching: Olson, ICRA 2009): starts are ranked by how many surfels find a map surfel that fits, the best are
+  /// registered with `align`, and the one that then fits best is returned. For the first pose and for finding back; thousands of starts take tenths of a second.
+  JointResult search(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess, const PoseSearchOptions& options = {});
+
  private:
   struct Workspace;
+  double score(const Eigen::Isometry3d& T_map_scan);
   JointOptions options_;
   std::unique_ptr<Workspace> workspace_;
 };
