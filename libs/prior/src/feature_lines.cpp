@@ -136,12 +136,12 @@ void read_feature_lines(const std::filesystem::path& file, const OutlineFrame& f
     Feature feature;
     try {
       const nlohmann::json json = nlohmann::json::parse(line);
-      if (json.at("id") != index) throw FormatError("is not numbered in order");
+      if (json.at("id") != index) throw FormatError("it is not numbered in order");
       feature = feature_from(json, frame);
     } catch (const nlohmann::json::exception&) {
       throw FormatError(file, "line " + std::to_string(index + 1) + " is no feature; make the prior again");
-    } catch (const FormatError& error) {
-      throw FormatError(file, "line " + std::to_string(index + 1) + " " + error.what() + "; make the prior again");
+    } catch (const Error& error) {
+      throw FormatError(file, "line " + std::to_string(index + 1) + " is no feature: " + error.what() + "; make the prior again");
     }
     consume(index, std::move(feature));
   }

@@ -111,6 +111,19 @@ TEST(PriorStore, NamesWhatIsWrong) {
   EXPECT_NE(message_of([&] { PriorStore(prior).load(key); }).find(tile.string()), std::string::npos);
 }
 
+TEST(PriorStore, ABrokenFeatureLineIsNamed) {
+  const TestFolder folder;
+  const auto prior = folder / "prior";
+  write_test_prior(prior);
+  const auto file = prior / "features.geojsonl";
+  const std::string whole = file_text(file);
+  for (const std::string& broken : {std::string("{"), std::string("[]"), whole.substr(0, whole.size() / 2), std::string("{\"id\":1}"),
+                                   std::string(5000, '['), std::string("\n")}) {
+    std::ofstream(file, std::ios::binary) << broken;
+    EXPECT_NE(message_of([&] { PriorStore(prior).features(); }).find("features.geojsonl: line 1 is no feature"), std::string::npos) << broken;
+  }
+}
+
 TEST(PriorStore, SchemaViolationsNameTheField) {
   const TestFolder folder;
   const auto prior = folder / "prior";
