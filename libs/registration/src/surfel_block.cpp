@@ -25,7 +25,7 @@ void SurfelMap::Block::merge(std::span<const Item> items, std::span<const std::u
     auto entry = std::find_if(in_voxel, after_voxel, same);
     if (entry == after_voxel) entry = std::find_if(entries_.begin() + std::ptrdiff_t(before), entries_.end(), same);
     if (entry == entries_.end()) {
-      entries_.push_back({item.surfel, item.normal, item.sigma_m * item.sigma_m, item.voxel, true});
+      entries_.push_back({item.surfel, item.normal, item.sigma_m * item.sigma_m, item.voxel, item.of_prior, true});
       continue;
     }
     if (entry->surfel.count >= float(options.max_count)) continue;
@@ -53,15 +53,25 @@ void SurfelMap::Block::order_by_voxel() {
   for (auto* column : {&x_, &y_, &z_}) column->resize(entries_.size() + lane_padding);
 }
 
+SurfelShape SurfelMap::Block::shape_of(const Entry& entry, float voxel_m) {
+  const float sigma = std::sqrt(entry.variance_sum / entry.surfel.count);
+  if (!entry.normal_sum.isZero(0)) return {entry.normal_sum.normalized(), 0, 1, sigma};
+  SurfelShape shape = shape_of_moments(entry.surfel, voxel_m);
+  if (entry.of_prior && shape.isotropic == 0 && shape.directed == 0) {  // point to point, as exact as points lie close
+    shape.isotropic = 1;
+    shape.sigma_m = 0.5f * voxel_m;
+  }
+  shape.sigma_m = std::hypot(shape.sigma_m, sigma);
+  return shape;
+}
+
 void SurfelMap::Block::remake_shapes(float voxel_m) {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     Entry& entry = entries_[i];
     if (!entry.changed) continue;
     entry.changed = false;
     x_[i] = entry.surfel.mean.x(), y_[i] = entry.surfel.mean.y(), z_[i] = entry.surfel.mean.z();
-    shapes_[i] = entry.normal_sum.isZero(0)
-                     ? shape_of_moments(entry.surfel, voxel_m)
-                     : SurfelShape{entry.normal_sum.normalized(), 0, 1, std::sqrt(entry.variance_sum / entry.surfel.count)};
+    shapes_[i] = shape_of(entry, voxel_m);
   }
 }
 

@@ -14,6 +14,7 @@ constexpr std::size_t lane_padding = 16;  // whole SIMD registers may be read pa
 struct SurfelMap::Item {
   std::uint32_t block = 0;
   std::uint16_t voxel = 0;  // within the block, x fastest
+  bool of_prior = false;  // a single point: of use even where no plane can be told
   float sigma_m = 0;
   Surfel surfel;  // relative to the block's corner
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
@@ -39,11 +40,13 @@ class SurfelMap::Block {
     Eigen::Vector3f normal_sum = Eigen::Vector3f::Zero();  // zero: the normal comes from the moments
     float variance_sum = 0;
     std::uint16_t voxel = 0;
+    bool of_prior = false;
     bool changed = true;
   };
 
   static bool belongs(const Entry& entry, const Item& item, const SurfelMapOptions& options);
   void order_by_voxel();
+  static SurfelShape shape_of(const Entry& entry, float voxel_m);
   void remake_shapes(float voxel_m);
 
   std::array<std::uint16_t, voxels_a_block + 1> begin_{};

@@ -48,6 +48,7 @@ void SurfelMap::insert(const PointCloud& points) {
     if (!p.allFinite()) continue;
     Item item = place(p);
     item.surfel.count = 1;
+    item.of_prior = true;
     if (!points.normal.empty() && points.normal[i].squaredNorm() > 0.25f) item.normal = points.normal[i].normalized();
     if (!points.sigma_m.empty() && std::isfinite(points.sigma_m[i])) item.sigma_m = points.sigma_m[i];
     items.push_back(item);

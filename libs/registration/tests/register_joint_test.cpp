@@ -46,4 +46,40 @@ TEST_F(JointRegistrationTest, FindsThePoseFromFiveMetresAndTenDegreesOff) {
   }
 }
 
+TEST_F(JointRegistrationTest, AllInstructionSetsGiveTheSameBytes) {
+  const JointTarget target{&prior};
+  const SurfelCloud noisy = scan(0.02);
+  const JointResult portable = JointRegistration({}, InstructionSet::portable).align(noisy, {&target, 1}, truth * street::pose(0.2, 0.1, 0, 0.01));
+  for (const InstructionSet set : {InstructionSet::avx2, InstructionSet::avx512, InstructionSet::best}) {
+    if (!is_available(set)) continue;
+    const JointResult other = JointRegistration({}, set).align(noisy, {&target, 1}, truth * street::pose(0.2, 0.1, 0, 0.01));
+    EXPECT_EQ(portable.T_map_scan.matrix(), other.T_map_scan.matrix());
+    EXPECT_EQ(portable.information, other.information);
+  }
+}
+
+TEST_F(JointRegistrationTest, PointsWithoutNormalsHoldTheScanToo) {
+  PointCloud bare = street::sample(world, 0.8, 0.05f);
+  bare.normal.clear();
+  SurfelMap map;
+  map.insert(bare);
+  const JointTarget target{&map};
+  const JointResult result = registration.align(scan(0.02), {&target, 1}, truth * street::pose(0.4, 0.2, 0.2, 0.02));
+  EXPECT_LT(street::distance(result.T_map_scan, truth), 0.1);
+}
+
+TEST(JointRegistrationInACanyon, TheInformationSaysThatAlongTheStreetNothingIsKnown) {
+  const street::World world = street::canyon();
+  SurfelMap prior;
+  prior.insert(street::sample(world, 0.5, 0.05f));
+  const Eigen::Isometry3d truth = street::pose(10, 1, 1.8, 0);
+  const SurfelCloud scan = ScanReducer(1.0).reduce(street::scan(world, truth, {}, 1));
+  const JointTarget target{&prior};
+  const JointResult result = JointRegistration().align(scan, {&target, 1}, truth * street::pose(0, 0.3, 0.1, 0.01));
+  EXPECT_LT((result.T_map_scan.translation() - truth.translation()).tail<2>().norm(), 0.01);
+  const Observability o = observability(result.targets[0].information);
+  EXPECT_GT(o.translation_sigma_m[0], 100 * o.translation_sigma_m[1]);
+  EXPECT_GT(std::abs(o.translation_axes(0, 0)), 0.99);  // the sensor looks along the street
+}
+
 }  // namespace
