@@ -14,6 +14,7 @@
 #include <priormap/core/parallel.hpp>
 #include <priormap/core/version.hpp>
 #include <priormap/simulation/random.hpp>
+#include <priormap/simulation/traffic.hpp>
 
 #include "drive_plan.hpp"
 #include "osm_town.hpp"
@@ -157,13 +158,13 @@ void write_scan(const fs::path& directory, std::size_t index, const PointCloud& 
     write_file(directory / "point_times" / (scan_name(index) + ".f32"), scan.time_s.data(), scan.time_s.size() * sizeof(float));
 }
 
-void write_scans(const fs::path& directory, const Lidar& lidar, const DrivePath& path, int threads, const Events& events, DriveSummary& summary) {
+void write_scans(const fs::path& directory, const Lidar& lidar, const DrivePath& path, const Traffic& traffic, const Terrain& terrain, int threads, const Events& events, DriveSummary& summary) {
   const auto start = std::chrono::steady_clock::now();
   std::atomic<std::size_t> num_points = 0;
-  std::vector<std::size_t> sizes(path.size());
   ordered_pipeline(path.size(), threads, static_cast<std::size_t>(4 * threads),
                    [&](std::size_t i) {
-                     const PointCloud scan = lidar.scan(path, i);
+                     const std::vector<Car> cars = traffic.at(i, terrain);
+                     const PointCloud scan = lidar.scan(path, i, &cars);
                      write_scan(directory, i, scan);
                      num_points += scan.size();
                    },
@@ -197,18 +198,19 @@ DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output,
 
   const DrivePlan plan = plan_drive(options, threads);
   const Town town = build_town(plan, options);
-  const std::vector<BuildingError> errors = draw_errors(town, plan.town.driven, options.errors, options.seed);
+  const std::vector<Eigen::Vector2d> driven = line_of(plan.track);
+  const std::vector<BuildingError> errors = draw_errors(town, driven, options.errors, options.seed);
   const DrivePath path = ride(plan.track, town.terrain, options.platform, options.seed);
   // The town's frame lies under the first wheel track; the frame `map` of the outputs at the first sensor pose, some centimetres off when it tilts.
   const MapFrame map = MapFrame::at(plan.frame.projected(), plan.frame.to_projected(path.poses.front().translation()));
   events.inform(format("%zu buildings, %zu trees, %zu parked cars along %.0f m of drive", town.buildings.size(), town.trees.size(),
-                       town.parked_cars.size(), length(plan.town.driven)));
+                       town.parked_cars.size(), length(driven)));
   const World world = build_world(town, options.seed);
 
   write_osm(root / "sources" / "town.osm.pbf", osm_of(town, errors, plan.frame));
   const Crs& crs = plan.frame.projected();
-  write_geotiff(root / "sources" / "dsm.tif", surface_model(world, town, plan.town.driven, plan.frame, options.errors, options.seed), crs);
-  write_geotiff(root / "sources" / "dtm.tif", terrain_model(town, plan.town.driven, plan.frame, options.errors, options.seed), crs);
+  write_geotiff(root / "sources" / "dsm.tif", surface_model(world, town, driven, plan.frame, options.errors, options.seed), crs);
+  write_geotiff(root / "sources" / "dtm.tif", terrain_model(town, driven, plan.frame, options.errors, options.seed), crs);
   write_times(root / "times.txt", path);
   write_trajectory(root / "truth" / "trajectory.csv", path, plan.frame);
   write_kitti_poses(root / "truth" / "poses_kitti.txt", path, plan.frame, map);
@@ -217,7 +219,7 @@ DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output,
   write_building_errors(root / "truth" / "buildings.csv", town, errors);
 
   DriveSummary summary;
-  summary.length_m = length(plan.town.driven);
+  summary.length_m = length(driven);
   summary.num_buildings = town.buildings.size();
   for (std::size_t i = 0; i < errors.size(); ++i) {
     summary.num_missing += errors[i].missing;
@@ -225,7 +227,8 @@ DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output,
   }
   LidarModel model = lidar_model(options.sensor);
   model.rate_hz = scan_rate_hz(options);
-  write_scans(root, Lidar(world, std::move(model), options.noise, options.seed), path, threads, events, summary);
+  write_scans(root, Lidar(world, std::move(model), options.noise, options.seed), path,
+              Traffic(plan.track, options.route.traffic_spacing_m, options.seed), town.terrain, threads, events, summary);
   write_text(root / "drive.json", manifest(options, town, summary).dump(2) + "\n");
   directory.commit();
   return summary;

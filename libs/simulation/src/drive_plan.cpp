@@ -74,46 +74,43 @@ Bounds2 bounds_around(const TownPlan& plan) {
   return {std::floor(low.x() - town_margin_m), std::floor(low.y() - town_margin_m), std::ceil(high.x() + town_margin_m), std::ceil(high.y() + town_margin_m)};
 }
 
-std::vector<Eigen::Vector2d> line_of(const std::vector<TrackPoint>& track) {
-  std::vector<Eigen::Vector2d> line;
-  for (const TrackPoint& point : track) line.push_back(point.position);
-  return line;
-}
-
-/// The recorded poses as the drive uses them: first pose at the origin of `map`, turned to its direction there.
+/// The recorded poses in `map`: the first one at its origin, turned to its direction there.
 std::vector<Eigen::Isometry3d> recorded_in_map(const DriveOptions& options, const RecordedPoses& recorded) {
-  const auto first = static_cast<std::size_t>(options.route.first_scan);
-  if (first >= recorded.poses.size()) throw UsageError("--first " + std::to_string(first) + " lies beyond the trajectory's end");
-  const std::size_t left = recorded.poses.size() - first;
-  const std::size_t count = options.route.num_scans == 0 ? left : std::min(left, static_cast<std::size_t>(options.route.num_scans));
-  const Eigen::Vector3d start = recorded.poses[first].translation();
-  const Eigen::Vector3d forward = recorded.poses[first].linear().col(0);
+  const Eigen::Vector3d start = recorded.poses.front().translation(), forward = recorded.poses.front().linear().col(0);
   // True north and map north agree at the frame's origin, where the first pose is.
   const double turn = options.route.start_yaw_deg * degree - std::atan2(forward.y(), forward.x());
-  const Eigen::AngleAxisd R_map_recorded(turn, Eigen::Vector3d::UnitZ());
+  const Eigen::Isometry3d T_map_recorded = Eigen::Translation3d(0, 0, options.route.origin_height_m) *
+                                           Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) * Eigen::Translation3d(-start);
   std::vector<Eigen::Isometry3d> poses;
-  for (std::size_t i = first; i < first + count; ++i) {
-    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.linear() = R_map_recorded * recorded.poses[i].linear();
-    pose.translation() = R_map_recorded * (recorded.poses[i].translation() - start) + Eigen::Vector3d(0, 0, options.route.origin_height_m);
-    poses.push_back(pose);
-  }
+  for (const Eigen::Isometry3d& pose : recorded.poses) poses.push_back(T_map_recorded * pose);
   return poses;
+}
+
+/// The part of a track that is driven.
+std::vector<TrackPoint> driven_part(const std::vector<TrackPoint>& track, const RouteOptions& route) {
+  const auto first = static_cast<std::size_t>(route.first_scan);
+  if (first >= track.size()) throw UsageError("--first " + std::to_string(first) + " lies beyond the trajectory's end");
+  const std::size_t left = track.size() - first;
+  const std::size_t count = route.num_scans == 0 ? left : std::min(left, static_cast<std::size_t>(route.num_scans));
+  const auto begin = track.begin() + static_cast<std::ptrdiff_t>(first);
+  return {begin, begin + static_cast<std::ptrdiff_t>(count)};
 }
 
 DrivePlan plan_recorded(const DriveOptions& options) {
   const RecordedPoses recorded = read_recorded_poses(*options.trajectory, options.route.trajectory_axes);
   const std::vector<Eigen::Isometry3d> poses = recorded_in_map(options, recorded);
   DrivePlan plan{frame_at_origin(options.route), {}, {}, {}};
+  std::vector<TrackPoint> track;
   std::vector<Eigen::Vector3d> positions;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Vector3d forward = poses[i].linear().col(0);
-    const double stamp_s = recorded.stamps_s.empty() ? static_cast<double>(i) / scan_rate_hz(options)
-                                                     : recorded.stamps_s[i + static_cast<std::size_t>(options.route.first_scan)];
-    plan.track.push_back({stamp_s, poses[i].translation().head<2>(), std::atan2(forward.y(), forward.x())});
+    const double stamp_s = recorded.stamps_s.empty() ? static_cast<double>(i) / scan_rate_hz(options) : recorded.stamps_s[i];
+    track.push_back({stamp_s, poses[i].translation().head<2>(), std::atan2(forward.y(), forward.x())});
     positions.push_back(poses[i].translation());
   }
-  plan.town.driven = line_of(plan.track);
+  // The town stands around the whole trajectory, whichever part of it is driven.
+  plan.track = driven_part(track, options.route);
+  plan.town.driven = line_of(track);
   plan.town.streets = streets_of_track(plan.town.driven);
   plan.town.bounds = bounds_around(plan.town);
   plan.town.relief = options.route.terrain ? relief_of(options, plan.frame, plan.town.bounds) : relief_through(positions, plan.town.bounds);
@@ -174,6 +171,12 @@ DrivePlan plan_in_osm_town(const DriveOptions& options, int threads) {
 
 }  // namespace
 
+std::vector<Eigen::Vector2d> line_of(const std::vector<TrackPoint>& track) {
+  std::vector<Eigen::Vector2d> line;
+  for (const TrackPoint& point : track) line.push_back(point.position);
+  return line;
+}
+
 double scan_rate_hz(const DriveOptions& options) { return options.route.rate_hz.value_or(lidar_model(options.sensor).rate_hz); }
 
 DrivePlan plan_drive(const DriveOptions& options, int threads) {
@@ -181,6 +184,7 @@ DrivePlan plan_drive(const DriveOptions& options, int threads) {
     throw UsageError("--trajectory-axes is camera or lidar, not '" + options.route.trajectory_axes + "'");
   DrivePlan plan = options.town != "generated" ? plan_in_osm_town(options, threads)
                    : options.trajectory ? plan_recorded(options) : plan_generated(options);
+  plan.town.rural = middle_of(line_of(plan.track), options.route.rural_m);
   if (plan.track.size() < 2) throw UsageError("a drive needs two scans at least");
   return plan;
 }

@@ -16,6 +16,8 @@ struct DrivePlan {
 /// @throws UsageError, CrsError, IoError, FormatError
 DrivePlan plan_drive(const DriveOptions& options, int threads);
 
+std::vector<Eigen::Vector2d> line_of(const std::vector<TrackPoint>& track);
+
 double scan_rate_hz(const DriveOptions& options);
 
 }  // namespace priormap

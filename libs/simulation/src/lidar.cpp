@@ -100,9 +100,9 @@ class Receiver {
 };
 
 /// Cars that move, as a small scene of their own.
-class Traffic {
+class MovingScene {
  public:
-  Traffic(const std::vector<Car>& cars, const Eigen::Vector3d& origin) : scene_(meshes_of(cars), origin) {}
+  MovingScene(const std::vector<Car>& cars, const Eigen::Vector3d& origin) : scene_(meshes_of(cars), origin) {}
 
   /// Replaces hits that a moving car comes before; returns its material, or `otherwise`.
   void overlay(std::span<const Ray> rays, float max_range_m, std::vector<RayHit>& hits, std::vector<Material>& materials) {
@@ -170,8 +170,8 @@ PointCloud Lidar::scan(const DrivePath& path, std::size_t index, const std::vect
   const Eigen::Vector3d scene_origin = world_.scene.origin();
   const double period_s = 1 / model_.rate_hz;
   Random random(seed_, {stream::scan, index});
-  std::optional<Traffic> traffic;
-  if (others && !others->empty()) traffic.emplace(*others, scene_origin);
+  std::optional<MovingScene> moving;
+  if (others && !others->empty()) moving.emplace(*others, scene_origin);
 
   PointCloud points;
   points.reserve(model_.rays_per_scan());
@@ -209,7 +209,7 @@ PointCloud Lidar::scan(const DrivePath& path, std::size_t index, const std::vect
       world_.scene.cast(rays, static_cast<float>(head.max_range_m), hits);
       for (std::size_t a = 0; a < steps; ++a)
         if (hits[a].hit()) materials[a] = world_.parts[hits[a].mesh].material;
-      if (traffic) traffic->overlay(rays, static_cast<float>(head.max_range_m), hits, materials);
+      if (moving) moving->overlay(rays, static_cast<float>(head.max_range_m), hits, materials);
       for (std::size_t a = 0; a < steps; ++a) {
         if (!hits[a].hit()) continue;
         float intensity = 0;

@@ -14,6 +14,15 @@ Polyline resampled(const Polyline& line, double step_m) {
   return points;
 }
 
+Polyline middle_of(const Polyline& line, double length_m) {
+  Polyline stretch;
+  if (length_m <= 0) return stretch;
+  const Run run(line);
+  const double start = std::max(0.0, 0.5 * (run.length() - length_m));
+  for (double s = start; s <= std::min(run.length(), start + length_m); s += 1) stretch.push_back(run.point(s));
+  return stretch;
+}
+
 Run::Run(const Polyline& line) : line_(line), stations_{0} {
   for (std::size_t i = 1; i < line_.size(); ++i) stations_.push_back(stations_.back() + (line_[i] - line_[i - 1]).norm());
 }

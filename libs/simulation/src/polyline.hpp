@@ -10,6 +10,9 @@ double length(const Polyline& line);
 /// Points every `step_m` along the line, its first one included.
 Polyline resampled(const Polyline& line, double step_m);
 
+/// The part of a line `length_m` long around its middle, a point every metre; empty when the length is 0.
+Polyline middle_of(const Polyline& line, double length_m);
+
 /// A line by its length: where one is after s metres, and which way it goes there.
 class Run {
  public:

@@ -37,12 +37,7 @@ Polygon2 moved(const Polygon2& polygon, double rotation, const Eigen::Vector2d& 
 class Gap {
  public:
   Gap(const std::vector<Eigen::Vector2d>& driven, double gap_m, const Bounds2& bounds) : wanted_(gap_m > 0), to_gap_(bounds, gap_reach_m + 1) {
-    if (!wanted_) return;
-    const Run run(driven);
-    Polyline stretch;
-    const double start = std::max(0.0, 0.5 * (run.length() - gap_m));
-    for (double s = start; s <= std::min(run.length(), start + gap_m); s += 1) stretch.push_back(run.point(s));
-    to_gap_.add(stretch);
+    to_gap_.add(middle_of(driven, gap_m));
   }
   bool covers(const Eigen::Vector2d& p) const { return wanted_ && to_gap_.distance(p) < gap_reach_m; }
 

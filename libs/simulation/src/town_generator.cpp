@@ -14,6 +14,7 @@
 namespace priormap {
 namespace {
 
+constexpr double rural_reach_m = 80;      // from the line driven
 constexpr double pavement_m = 2;          // between kerb and garden
 constexpr double track_clearance_m = 2.3; // of anything from the line driven: half a car, half a parked car, some air
 
@@ -58,9 +59,10 @@ class Builder {
  public:
   Builder(Town& town, const TownPlan& plan, const TownOptions& options, std::uint64_t seed)
       : town_(town), plan_(plan), options_(options), seed_(seed), to_street_(plan.bounds, 40), to_track_(plan.bounds, 12),
-        taken_(plan.bounds) {
+        to_rural_(plan.bounds, rural_reach_m + 1), taken_(plan.bounds) {
     for (const Street& street : plan.streets) to_street_.add(street.line, street.half_width_m);
     to_track_.add(plan.driven);
+    to_rural_.add(plan.rural);
     for (const Building& building : town.buildings) taken_.add(building.outline.exterior);
   }
 
@@ -143,7 +145,7 @@ class Builder {
     constexpr double joint_m = 0.03, shrink_m = 0.3;
     const Eigen::Vector2d away = side * left_of(along);
     const Eigen::Vector2d front = start + (half_width_m + lot.setback_m) * away;
-    const bool has_wing = lot.width_m > 10 && draw.chance(0.2), built = draw.chance(options_.building_share);
+    const bool has_wing = lot.width_m > 10 && draw.chance(0.2), built = draw.chance(share_built(front));
     const double wing_m = draw.uniform(3, 6);
     const auto at = [&](double a, double b) { return Eigen::Vector2d(front + a * along + b * away); };
     const double w = lot.width_m, d = lot.depth_m;
@@ -168,6 +170,11 @@ class Builder {
     taken_.add(ring);
     town_.buildings.push_back(std::move(building));
     return true;
+  }
+
+  double share_built(const Eigen::Vector2d& p) const {
+    constexpr double rural_share = 0.05;
+    return to_rural_.distance(p) < rural_reach_m ? rural_share * options_.building_share : options_.building_share;
   }
 
   template <class At>
@@ -270,7 +277,7 @@ class Builder {
   const TownPlan& plan_;
   const TownOptions& options_;
   std::uint64_t seed_;
-  DistanceField to_street_, to_track_;
+  DistanceField to_street_, to_track_, to_rural_;
   Occupancy taken_;
 };
 

@@ -29,6 +29,8 @@ struct RouteOptions {
   double speed_mps = 8.3;
   std::optional<double> rate_hz;
   bool there_and_back = false;
+  double traffic_spacing_m = 0;
+  double rural_m = 0;
   double start_error_m = 0.5;
   double start_error_deg = 1;
 
@@ -46,6 +48,8 @@ struct RouteOptions {
     visit("speed", speed_mps, {"speed on straight stretches of a route", "m/s", 0.1, 60});
     visit("rate", rate_hz, {"scans per second; default: the sensor's", "Hz", 0.1, 100});
     visit("there-and-back", there_and_back, {"drive the route out, and back on the other side of the street"});
+    visit("traffic-spacing", traffic_spacing_m, {"mean distance between moving cars of one direction; 0: none", "m", 0, 1e6});
+    visit("rural", rural_m, {"length of the drive, around its middle, along which hardly a house stands (generated towns)", "m", 0, 1e6});
     visit("start-error", start_error_m, {"horizontal error of truth/initial_pose.txt", "m", 0, 100});
     visit("start-error-yaw", start_error_deg, {"yaw error of truth/initial_pose.txt", "deg", 0, 180});
   }

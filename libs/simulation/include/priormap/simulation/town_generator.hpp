@@ -31,6 +31,7 @@ struct TownOptions {
 struct TownPlan {
   std::vector<Street> streets;
   std::vector<Eigen::Vector2d> driven;   ///< line the vehicle will drive: nothing stands on it
+  std::vector<Eigen::Vector2d> rural;    ///< stretch along which hardly a house stands; empty: none
   Relief relief;                         ///< ground without kerbs
   Bounds2 bounds;
 };
