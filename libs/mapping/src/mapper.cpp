@@ -1,5 +1,7 @@
 #include <priormap/mapping/mapper.hpp>
 
+#include <numbers>
+
 #include <priormap/mapping/motion.hpp>
 #include <priormap/pointcloud/downsample.hpp>
 
@@ -67,9 +69,11 @@ const MappedScan& Mapper::step(const Scan& scan) {
   return scans_.back();
 }
 
-/// Motion counts from the last pose that was added: creeping along adds up until it is seen.
+/// Motion counts from the last pose that was added: creeping along adds up until it is seen. A vehicle that turns on the spot does not stand still.
 bool Mapper::stands_still(const RegistrationResult& to_local) const {
-  return to_local.converged && (to_local.T_target_source.translation() - T_map_last_.translation()).norm() < options_.min_motion_m;
+  const Eigen::Isometry3d motion = T_map_last_.inverse() * to_local.T_target_source;
+  return to_local.converged && motion.translation().norm() < options_.min_motion_m &&
+         Eigen::AngleAxisd(motion.linear()).angle() < options_.min_turn_deg * std::numbers::pi / 180;
 }
 
 void Mapper::repeat_last(MappedScan& mapped) {

@@ -14,7 +14,8 @@ struct MapperOptions {
   VoxelHashMapOptions voxels;             ///< of prior and local map
   IcpOptions icp;                         ///< of both matchings
   PoseGraphOptions graph;
-  double min_motion_m = 0.1;              ///< less since the last pose: the vehicle stands still
+  double min_motion_m = 0.1;              ///< less since the last pose, and less turned than the next: the vehicle stands still
+  double min_turn_deg = 1;                ///< the paper names no angle; without one a vehicle that turns on the spot is lost
   double min_inlier_share = 0.5;          ///< of the correspondences with the prior, for an absolute constraint
   double local_map_radius_m = 100;        ///< the local map is dropped beyond
   double prior_radius_m = 150;            ///< the prior is held within: a scan's range and some
@@ -30,6 +31,7 @@ struct MapperOptions {
     icp.describe(visit);
     graph.describe(visit);
     visit("min-motion", min_motion_m, {"less motion than this since the last pose: the vehicle stands still", "m", 0, 10});
+    visit("min-turn", min_turn_deg, {"less turn than this and less motion since the last pose: the vehicle stands still", "deg", 0, 180});
     visit("min-inlier-share", min_inlier_share, {"share of the correspondences that must be inliers for a match to count", "", 0, 1});
     visit("local-map-radius", local_map_radius_m, {"the local map is dropped beyond", "m", 1, 10000});
     visit("prior-radius", prior_radius_m, {"the prior is held within", "m", 1, 10000});
