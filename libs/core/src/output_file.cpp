@@ -39,6 +39,7 @@ class OutputFile::Buffer : public std::streambuf {
   }
 
   std::streamsize xsputn(const char* text, std::streamsize size) override {
+    if (size == 0) return 0;
     if (size < epptr() - pptr()) {
       std::memcpy(pptr(), text, static_cast<std::size_t>(size));
       pbump(static_cast<int>(size));

@@ -1,6 +1,7 @@
 #include <priormap/simulation/drive.hpp>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -29,7 +30,7 @@ DriveOptions small_drive() {
 }
 
 fs::path fresh(const std::string& name) {
-  const fs::path path = fs::path(testing::TempDir()) / ("drive_test_" + name);
+  const fs::path path = fs::path(testing::TempDir()) / ("priormap_drive_" + name + "_" + std::to_string(::getpid()));   // tests run side by side
   fs::remove_all(path);
   return path;
 }

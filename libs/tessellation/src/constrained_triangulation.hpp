@@ -14,8 +14,14 @@ struct FaceLabel {
   int component = -1;  ///< of the inside, connected across edges
 };
 
+/// Vertices that CGAL makes where constraints cross keep `none`: it leaves a plain number uninitialised.
+struct VertexNumber {
+  static constexpr std::uint32_t none = 0xffffffffu;
+  std::uint32_t value = none;
+};
+
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<std::uint32_t, Kernel>;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<VertexNumber, Kernel>;
 using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel, CGAL::Triangulation_face_base_with_info_2<FaceLabel, Kernel>>;
 using Cdt = CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>,
                                                        CGAL::Exact_predicates_tag>;

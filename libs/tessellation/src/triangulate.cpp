@@ -8,9 +8,6 @@
 namespace priormap {
 namespace {
 
-/// Vertices made by crossing constraints carry this number.
-constexpr std::uint32_t new_vertex = 0xffffffffu;
-
 /// Inserts the edges of a ring as constraints; its vertices are numbered from `first_number` on.
 void insert_ring(Cdt& cdt, const Ring2& ring, std::uint32_t first_number) {
   if (ring.empty()) return;
@@ -21,7 +18,7 @@ void insert_ring(Cdt& cdt, const Ring2& ring, std::uint32_t first_number) {
     const std::size_t before = cdt.number_of_vertices();
     handles.push_back(cdt.insert(Kernel::Point_2(p.x(), p.y()), hint));
     // A vertex that coincides with an earlier one keeps that one's number.
-    if (cdt.number_of_vertices() > before) handles.back()->info() = first_number + static_cast<std::uint32_t>(handles.size() - 1);
+    if (cdt.number_of_vertices() > before) handles.back()->info().value = first_number + static_cast<std::uint32_t>(handles.size() - 1);
   }
   for (std::size_t i = 0; i < handles.size(); ++i) {
     const auto a = handles[i], b = handles[i + 1 == handles.size() ? 0 : i + 1];
@@ -39,13 +36,13 @@ TriangleMesh triangulate_flat(const Polygon2& polygon) {
   if (cdt.dimension() < 2) return {};
   label_inside(cdt, [&](const Cdt::Edge& edge) { return cdt.is_constrained(edge); });
   for (auto vertex : cdt.finite_vertex_handles()) {
-    if (vertex->info() != new_vertex) continue;
-    vertex->info() = static_cast<std::uint32_t>(mesh.vertices.size());
+    if (vertex->info().value != VertexNumber::none) continue;
+    vertex->info().value = static_cast<std::uint32_t>(mesh.vertices.size());
     mesh.vertices.emplace_back(vertex->point().x(), vertex->point().y(), 0);
   }
   for (auto face : cdt.finite_face_handles())
     if (face->info().inside)
-      mesh.triangles.push_back({face->vertex(0)->info(), face->vertex(1)->info(), face->vertex(2)->info()});
+      mesh.triangles.push_back({face->vertex(0)->info().value, face->vertex(1)->info().value, face->vertex(2)->info().value});
   return mesh;
 }
 
