@@ -4,9 +4,9 @@
 #include <atomic>
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <sstream>
 
 #include <priormap/builder/bbox_filter.hpp>
@@ -152,7 +152,6 @@ class Sampling {
 
   void read(const HashedFile& file, const std::string& source_id, std::uint16_t source, ModelReport& report) {
     const auto finish_batch = [&] {
-      std::mutex mutex;
       std::vector<Diagnostics> diagnostics(batch_.size());
       std::atomic<std::size_t> buildings{0}, terrain{0};
       for_each_chunk(
