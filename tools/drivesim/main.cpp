@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   app.option("--seed", options.seed, {"same seed and options, same bytes"});
   app.required("-o,--output", output, "directory to write");
   app.options(options.route, "Drive");
+  app.options(options.kidnap, "Kidnapping");
   app.options(options.platform, "Platform");
   app.options(options.noise, "Sensor noise");
   app.options(options.town_options, "Town");

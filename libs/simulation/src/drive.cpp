@@ -54,16 +54,55 @@ std::string quaternion_text(const Eigen::Matrix3d& rotation, char separator) {
   return format("%.9f%c%.9f%c%.9f%c%.9f", q.x(), separator, q.y(), separator, q.z(), separator, q.w());
 }
 
-void write_trajectory(const fs::path& file, const DrivePath& path, const MapFrame& frame) {
+/// Something driven in one go.
+struct Stretch {
+  DrivePath path;
+  Traffic traffic;
+};
+
+/// Which scan of which stretch.
+struct Shot {
+  const Stretch* stretch;
+  std::size_t index;
+};
+
+/// The drive with the scans of another street spliced in before its scan number `at`.
+std::vector<Shot> splice(const Stretch& drive, const Stretch& elsewhere, std::size_t at) {
+  std::vector<Shot> shots;
+  for (std::size_t i = 0; i < drive.path.size(); ++i) {
+    if (i == at)
+      for (std::size_t k = 0; k < elsewhere.path.size(); ++k) shots.push_back({&elsewhere, k});
+    shots.push_back({&drive, i});
+  }
+  return shots;
+}
+
+/// Poses of the scans as they come, at stamps that go on through a splice.
+DrivePath recorded_path(const std::vector<Shot>& shots, const Stretch& elsewhere, double period_s) {
+  DrivePath recorded;
+  double away_s = 0;
+  for (const Shot& shot : shots) {
+    const bool is_elsewhere = shot.stretch == &elsewhere;
+    recorded.stamps_s.push_back(is_elsewhere ? recorded.stamps_s.back() + period_s : shot.stretch->path.stamps_s[shot.index] + away_s);
+    recorded.poses.push_back(shot.stretch->path.poses[shot.index]);
+    if (is_elsewhere) away_s += period_s;
+  }
+  return recorded;
+}
+
+/// @param elsewhere  stretch whose scans the last column marks; an empty one: no such column
+void write_trajectory(const fs::path& file, const DrivePath& path, const std::vector<Shot>& shots, const Stretch& elsewhere, const MapFrame& frame) {
+  const bool marked = elsewhere.path.size() > 0;
   std::vector<Eigen::Vector3d> lon_lat;
   for (const auto& pose : path.poses) lon_lat.push_back(pose.translation());
   frame.to_lon_lat(lon_lat);
-  std::string text = "index,stamp_s,x_m,y_m,z_m,qx,qy,qz,qw,lon_deg,lat_deg\n";
+  std::string text = std::string("index,stamp_s,x_m,y_m,z_m,qx,qy,qz,qw,lon_deg,lat_deg") + (marked ? ",kidnapped\n" : "\n");
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Eigen::Isometry3d T_projected_sensor = frame.pose_to_projected(path.poses[i]);
     const Eigen::Vector3d& p = T_projected_sensor.translation();
     text += format("%zu,%.6f,%.4f,%.4f,%.4f,", i, path.stamps_s[i], p.x(), p.y(), p.z()) + quaternion_text(T_projected_sensor.linear(), ',') +
-            format(",%.10f,%.10f\n", lon_lat[i].x(), lon_lat[i].y());
+            format(",%.10f,%.10f", lon_lat[i].x(), lon_lat[i].y());
+    text += marked ? format(",%d\n", shots[i].stretch == &elsewhere) : "\n";
   }
   write_text(file, text);
 }
@@ -141,6 +180,7 @@ Json manifest(const DriveOptions& options, const Town& town, const DriveSummary&
   json["seed"] = options.seed;
   json["options"] = {{"route", json_of(options.route)}, {"town", json_of(options.town_options)}, {"source_errors", json_of(options.errors)},
                      {"platform", json_of(options.platform)}, {"lidar", json_of(options.noise)}};
+  if (options.kidnap.at_scan > 0) json["options"]["kidnap"] = json_of(options.kidnap);
   json["world"] = {{"buildings", town.buildings.size()}, {"buildings_missing_in_osm", summary.num_missing},
                    {"buildings_without_height_in_osm", summary.num_default_height}, {"trees", town.trees.size()}, {"poles", town.poles.size()},
                    {"parked_cars", town.parked_cars.size()}, {"barriers", town.barriers.size()}};
@@ -158,21 +198,23 @@ void write_scan(const fs::path& directory, std::size_t index, const PointCloud& 
     write_file(directory / "point_times" / (scan_name(index) + ".f32"), scan.time_s.data(), scan.time_s.size() * sizeof(float));
 }
 
-void write_scans(const fs::path& directory, const Lidar& lidar, const DrivePath& path, const Traffic& traffic, const Terrain& terrain, int threads, const Events& events, DriveSummary& summary) {
+void write_scans(const fs::path& directory, const Lidar& lidar, const std::vector<Shot>& shots, const Terrain& terrain, int threads,
+                 const Events& events, DriveSummary& summary) {
   const auto start = std::chrono::steady_clock::now();
   std::atomic<std::size_t> num_points = 0;
-  ordered_pipeline(path.size(), threads, static_cast<std::size_t>(4 * threads),
+  ordered_pipeline(shots.size(), threads, static_cast<std::size_t>(4 * threads),
                    [&](std::size_t i) {
-                     const std::vector<Car> cars = traffic.at(i, terrain);
-                     const PointCloud scan = lidar.scan(path, i, &cars);
+                     const Shot& shot = shots[i];
+                     const std::vector<Car> cars = shot.stretch->traffic.at(shot.index, terrain);
+                     const PointCloud scan = lidar.scan(shot.stretch->path, shot.index, &cars);
                      write_scan(directory, i, scan);
                      num_points += scan.size();
                    },
-                   [&](std::size_t i) { events.advance("scans", static_cast<double>(i + 1) / static_cast<double>(path.size())); });
+                   [&](std::size_t i) { events.advance("scans", static_cast<double>(i + 1) / static_cast<double>(shots.size())); });
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
-  summary.num_scans = path.size();
+  summary.num_scans = shots.size();
   summary.num_points = num_points;
-  summary.simulate_ms_per_scan = elapsed.count() / static_cast<double>(path.size());
+  summary.simulate_ms_per_scan = elapsed.count() / static_cast<double>(shots.size());
 }
 
 bool source_says_height(const Building& building, const BuildingError& error) {
@@ -200,7 +242,12 @@ DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output,
   const Town town = build_town(plan, options);
   const std::vector<Eigen::Vector2d> driven = line_of(plan.track);
   const std::vector<BuildingError> errors = draw_errors(town, driven, options.errors, options.seed);
-  const DrivePath path = ride(plan.track, town.terrain, options.platform, options.seed);
+  const auto drive_stretch = [&](const std::vector<TrackPoint>& track) {
+    return Stretch{ride(track, town.terrain, options.platform, options.seed), Traffic(track, options.route.traffic_spacing_m, options.seed)};
+  };
+  const Stretch drive = drive_stretch(plan.track), elsewhere = drive_stretch(plan.elsewhere);
+  const std::vector<Shot> shots = splice(drive, elsewhere, static_cast<std::size_t>(options.kidnap.at_scan));
+  const DrivePath path = recorded_path(shots, elsewhere, 1 / scan_rate_hz(options));
   // The town's frame lies under the first wheel track; the frame `map` of the outputs at the first sensor pose, some centimetres off when it tilts.
   const MapFrame map = MapFrame::at(plan.frame.projected(), plan.frame.to_projected(path.poses.front().translation()));
   events.inform(format("%zu buildings, %zu trees, %zu parked cars along %.0f m of drive", town.buildings.size(), town.trees.size(),
@@ -212,7 +259,7 @@ DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output,
   write_geotiff(root / "sources" / "dsm.tif", surface_model(world, town, driven, plan.frame, options.errors, options.seed), crs);
   write_geotiff(root / "sources" / "dtm.tif", terrain_model(town, driven, plan.frame, options.errors, options.seed), crs);
   write_times(root / "times.txt", path);
-  write_trajectory(root / "truth" / "trajectory.csv", path, plan.frame);
+  write_trajectory(root / "truth" / "trajectory.csv", path, shots, elsewhere, plan.frame);
   write_kitti_poses(root / "truth" / "poses_kitti.txt", path, plan.frame, map);
   write_initial_pose(root / "truth" / "initial_pose.txt", path, plan.frame, options);
   write_frame(root / "truth" / "frame.json", map, options);
@@ -227,8 +274,7 @@ DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output,
   }
   LidarModel model = lidar_model(options.sensor);
   model.rate_hz = scan_rate_hz(options);
-  write_scans(root, Lidar(world, std::move(model), options.noise, options.seed), path,
-              Traffic(plan.track, options.route.traffic_spacing_m, options.seed), town.terrain, threads, events, summary);
+  write_scans(root, Lidar(world, std::move(model), options.noise, options.seed), shots, town.terrain, threads, events, summary);
   write_text(root / "drive.json", manifest(options, town, summary).dump(2) + "\n");
   directory.commit();
   return summary;

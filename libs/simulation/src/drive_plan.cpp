@@ -96,10 +96,30 @@ std::vector<TrackPoint> driven_part(const std::vector<TrackPoint>& track, const 
   return {begin, begin + static_cast<std::ptrdiff_t>(count)};
 }
 
+/// Where a kidnapped vehicle is missed; nothing: it is not kidnapped.
+std::optional<Eigen::Vector2d> kidnapped_at(const DriveOptions& options, const std::vector<TrackPoint>& track) {
+  if (options.kidnap.at_scan == 0) return std::nullopt;
+  const auto at = static_cast<std::size_t>(options.kidnap.at_scan);
+  if (at >= track.size())
+    throw UsageError("--kidnap-at " + std::to_string(at) + " lies beyond the drive's " + std::to_string(track.size()) + " scans");
+  return track[at].position;
+}
+
+/// The stretch of a track that starts farthest from a place.
+std::vector<TrackPoint> farthest_part(const std::vector<TrackPoint>& track, const Eigen::Vector2d& place, int num_scans) {
+  if (track.size() < static_cast<std::size_t>(num_scans))
+    throw UsageError("--kidnap-scans " + std::to_string(num_scans) + " is more than the trajectory has");
+  const auto last_begin = track.end() - num_scans + 1;
+  const auto begin = std::max_element(track.begin(), last_begin, [&](const TrackPoint& a, const TrackPoint& b) {
+    return (a.position - place).squaredNorm() < (b.position - place).squaredNorm();
+  });
+  return {begin, begin + num_scans};
+}
+
 DrivePlan plan_recorded(const DriveOptions& options) {
   const RecordedPoses recorded = read_recorded_poses(*options.trajectory, options.route.trajectory_axes);
   const std::vector<Eigen::Isometry3d> poses = recorded_in_map(options, recorded);
-  DrivePlan plan{frame_at_origin(options.route), {}, {}, {}};
+  DrivePlan plan{frame_at_origin(options.route), {}, {}, {}, {}};
   std::vector<TrackPoint> track;
   std::vector<Eigen::Vector3d> positions;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -110,6 +130,7 @@ DrivePlan plan_recorded(const DriveOptions& options) {
   }
   // The town stands around the whole trajectory, whichever part of it is driven.
   plan.track = driven_part(track, options.route);
+  if (const auto place = kidnapped_at(options, plan.track)) plan.elsewhere = farthest_part(track, *place, options.kidnap.num_scans);
   plan.town.driven = line_of(track);
   plan.town.streets = streets_of_track(plan.town.driven);
   plan.town.bounds = bounds_around(plan.town);
@@ -123,20 +144,35 @@ void shift(StreetGraph& graph, const Eigen::Vector2d& by) {
     for (Eigen::Vector2d& p : edge.line) p += by;
 }
 
-std::vector<TrackPoint> drive_route(const DriveOptions& options, const StreetGraph& graph) {
+std::vector<TrackPoint> drive_from(const Eigen::Vector2d& start, std::size_t num_scans, bool there_and_back, const DriveOptions& options,
+                                   const StreetGraph& graph) {
   constexpr double lane_share = 0.3, spare_m = 50;
-  const RouteOptions& route = options.route;
-  const std::size_t count = route.num_scans == 0 ? default_scans : static_cast<std::size_t>(route.num_scans);
-  const DriveSpeed speed{route.speed_mps, scan_rate_hz(options)};
-  const double length_m = static_cast<double>(count) / speed.rate_hz * speed.speed_mps + (route.there_and_back ? 0 : spare_m);
-  const auto line = route_along(graph, Eigen::Vector2d::Zero(), length_m, route.there_and_back, options.seed);
-  return drive_along(line, lane_share * graph.edges.front().half_width_m, speed, count);
+  const DriveSpeed speed{options.route.speed_mps, scan_rate_hz(options)};
+  const double length_m = static_cast<double>(num_scans) / speed.rate_hz * speed.speed_mps + (there_and_back ? 0 : spare_m);
+  const auto line = route_along(graph, start, length_m, there_and_back, options.seed);
+  return drive_along(line, lane_share * graph.edges.front().half_width_m, speed, num_scans);
+}
+
+std::vector<TrackPoint> drive_route(const DriveOptions& options, const StreetGraph& graph) {
+  const std::size_t count = options.route.num_scans == 0 ? default_scans : static_cast<std::size_t>(options.route.num_scans);
+  return drive_from(Eigen::Vector2d::Zero(), count, options.route.there_and_back, options, graph);
+}
+
+/// A kidnapped vehicle's route along the streets, from the node farthest from where it is missed.
+std::vector<TrackPoint> drive_elsewhere(const DriveOptions& options, const std::vector<TrackPoint>& track, const StreetGraph& graph) {
+  const auto place = kidnapped_at(options, track);
+  if (!place) return {};
+  const auto farthest = std::max_element(graph.nodes.begin(), graph.nodes.end(), [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return (a - *place).squaredNorm() < (b - *place).squaredNorm();
+  });
+  return drive_from(*farthest, static_cast<std::size_t>(options.kidnap.num_scans), false, options, graph);
 }
 
 DrivePlan plan_generated(const DriveOptions& options) {
   StreetGraph graph = grid_streets(options.route.town_size_m, options.seed);
   shift(graph, -drive_route(options, graph).front().position);   // the frame's origin is the first pose
-  DrivePlan plan{frame_at_origin(options.route), {}, drive_route(options, graph), {}};
+  DrivePlan plan{frame_at_origin(options.route), {}, drive_route(options, graph), {}, {}};
+  plan.elsewhere = drive_elsewhere(options, plan.track, graph);
   plan.town.driven = line_of(plan.track);
   plan.town.streets = streets_of(graph);
   plan.town.bounds = bounds_around(plan.town);
@@ -149,18 +185,26 @@ MapFrame frame_at(const MapFrame& other, const Eigen::Vector2d& p_other, double 
   return MapFrame::at(other.projected(), other.to_projected(Eigen::Vector3d(p_other.x(), p_other.y(), height_m)));
 }
 
+std::vector<TrackPoint> moved(const std::vector<TrackPoint>& track, const MapFrame& from, const MapFrame& to) {
+  std::vector<TrackPoint> result;
+  for (const TrackPoint& point : track) {
+    const Eigen::Isometry3d T_from = upright({point.position.x(), point.position.y(), 0}, point.yaw);
+    const Eigen::Isometry3d T_to = to.pose_to_map(from.pose_to_projected(T_from));
+    result.push_back({point.stamp_s, T_to.translation().head<2>(), std::atan2(T_to(1, 0), T_to(0, 0))});
+  }
+  return result;
+}
+
 DrivePlan plan_in_osm_town(const DriveOptions& options, int threads) {
   if (options.trajectory) throw UsageError("--trajectory goes with a generated town; in an OSM town the drive follows the streets");
   const OsmTown osm(options.town, threads);
   // The route decides where the first pose is, and with it the frame: find it in a frame nearby.
   const MapFrame nearby = frame_at(options.route, osm.centre_lon_lat());
-  const std::vector<TrackPoint> track = drive_route(options, osm.streets(nearby, osm.buildings(nearby)));
-  DrivePlan plan{frame_at(nearby, track.front().position, options.route.origin_height_m), {}, {}, {}};
-  for (const TrackPoint& point : track) {
-    const Eigen::Isometry3d T_nearby = upright({point.position.x(), point.position.y(), 0}, point.yaw);
-    const Eigen::Isometry3d T_map = plan.frame.pose_to_map(nearby.pose_to_projected(T_nearby));
-    plan.track.push_back({point.stamp_s, T_map.translation().head<2>(), std::atan2(T_map(1, 0), T_map(0, 0))});
-  }
+  const StreetGraph graph = osm.streets(nearby, osm.buildings(nearby));
+  const std::vector<TrackPoint> track = drive_route(options, graph);
+  DrivePlan plan{frame_at(nearby, track.front().position, options.route.origin_height_m), {}, {}, {}, {}};
+  plan.track = moved(track, nearby, plan.frame);
+  plan.elsewhere = moved(drive_elsewhere(options, track, graph), nearby, plan.frame);
   plan.buildings = osm.buildings(plan.frame);
   plan.town.driven = line_of(plan.track);
   plan.town.streets = streets_of(osm.streets(plan.frame, *plan.buildings));

@@ -10,6 +10,7 @@ struct DrivePlan {
   MapFrame frame;
   TownPlan town;
   std::vector<TrackPoint> track;
+  std::vector<TrackPoint> elsewhere;   ///< where the vehicle is kidnapped to; empty: it is not
   std::optional<std::vector<Building>> buildings;   ///< of an OSM town: as the file has them, not yet on the ground; none: a town is to be generated
 };
 

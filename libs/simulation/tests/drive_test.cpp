@@ -185,6 +185,73 @@ TEST_F(Drive, PointsPlacedByTheTruthLieOnTheGround) {
   EXPECT_GT(on_ground, 0.6 * low);
 }
 
+/// Bytes of the scans in the order of the drive.
+std::vector<std::string> scan_hashes(const fs::path& root) {
+  std::vector<std::string> result;
+  for (const auto& [name, hash] : hashes(root / "velodyne")) result.push_back(hash);
+  return result;
+}
+
+TEST_F(Drive, KidnappingSplicesInScansOfAnotherStreet) {
+  const fs::path root = fresh("kidnapped");
+  DriveOptions options = small_drive();
+  options.kidnap = {2, 3};
+  EXPECT_EQ(simulate_drive(options, root, Overwrite::refuse, 2, {}).num_scans, 7u);
+
+  // The old street goes on as if nothing had happened, and the sources know nothing of it.
+  std::vector<std::string> own = scan_hashes(root);
+  own.erase(own.begin() + 2, own.begin() + 5);
+  EXPECT_EQ(own, scan_hashes(root_));
+  for (const char* file : {"sources/town.osm.pbf", "sources/dsm.tif", "truth/buildings.csv", "truth/initial_pose.txt"})
+    EXPECT_EQ(sha256_file(root / file), sha256_file(root_ / file)) << file;
+
+  const auto truth = table(root / "truth/trajectory.csv", ',', true), undisturbed = table(root_ / "truth/trajectory.csv", ',', true);
+  ASSERT_EQ(truth.size(), 7u);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const bool kidnapped = i >= 2 && i < 5;
+    EXPECT_EQ(truth[i].back(), kidnapped ? 1 : 0);
+    EXPECT_NEAR(truth[i][1], 0.1 * static_cast<double>(i), 1e-6) << "stamps go on";
+    const auto& before = undisturbed[1];
+    EXPECT_EQ(std::hypot(truth[i][2] - before[2], truth[i][3] - before[3]) > 50, kidnapped);
+    if (!kidnapped) {
+      EXPECT_EQ(truth[i][2], undisturbed[i < 2 ? i : i - 3][2]);
+    }
+  }
+  fs::remove_all(root);
+}
+
+/// A file of 40 poses along a bend, in lidar axes.
+fs::path recorded_bend() {
+  const fs::path file = fresh("bend.txt");
+  std::ofstream out(file);
+  for (int i = 0; i < 40; ++i) {
+    const double s = 0.8 * i, yaw = 0.02 * s;
+    out << 0.1 * i << ' ' << 50 * std::sin(yaw) << ' ' << 50 * (1 - std::cos(yaw)) << " 0 0 0 " << std::sin(yaw / 2) << ' ' << std::cos(yaw / 2) << '\n';
+  }
+  return file;
+}
+
+/// The world of drives along a trajectory is frozen: the published figures were measured in it.
+TEST(FrozenWorld, StaysAsItWas) {
+  const fs::path root = fresh("frozen"), trajectory = recorded_bend();
+  DriveOptions options;
+  options.trajectory = trajectory.string();
+  options.route.trajectory_axes = "lidar";
+  options.route.num_scans = 2;
+  options.seed = 5;
+  const DriveSummary summary = simulate_drive(options, root, Overwrite::refuse, 1, {});
+  std::vector<float> values(fs::file_size(root / "velodyne/000001.bin") / sizeof(float));
+  std::ifstream(root / "velodyne/000001.bin", std::ios::binary).read(reinterpret_cast<char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(float)));
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  for (std::size_t i = 0; i < values.size(); i += 4) sum += Eigen::Map<const Eigen::Vector4f>(values.data() + i).cast<double>();
+  const double num_points = static_cast<double>(values.size()) / 4;
+  EXPECT_EQ(summary.num_buildings, 3u);
+  EXPECT_NEAR(num_points, 101800, 200);   // the last digits are the processor's
+  EXPECT_LT((sum / num_points - Eigen::Vector4d(-1.3195, 0.2299, -1.3169, 0.2689)).norm(), 0.01);
+  fs::remove_all(root);
+  fs::remove(trajectory);
+}
+
 TEST(DriveFaults, AreNamedAndLeaveNothing) {
   const fs::path out = fresh("fault");
   DriveOptions options = small_drive();
@@ -195,6 +262,9 @@ TEST(DriveFaults, AreNamedAndLeaveNothing) {
   EXPECT_THROW(simulate_drive(options, out, Overwrite::refuse, 1, {}), IoError);
   options = small_drive();
   options.sensor = "abacus";
+  EXPECT_THROW(simulate_drive(options, out, Overwrite::refuse, 1, {}), UsageError);
+  options = small_drive();
+  options.kidnap.at_scan = 4;
   EXPECT_THROW(simulate_drive(options, out, Overwrite::refuse, 1, {}), UsageError);
   options = small_drive();
   options.route.origin_lon_lat = {11};

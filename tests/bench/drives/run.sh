@@ -27,6 +27,7 @@ distortion       kitti  osm,dsm  --motion-distortion
 traffic          kitti  osm,dsm  --traffic-spacing 30
 os1_128          kitti  osm,dsm  --sensor os1-128
 rig4             kitti  osm,dsm  --sensor rig4
+kidnap           kitti  osm,dsm  --kidnap-at 200 --kidnap-scans 60       # scored on the own street
 hdl32            route  osm,dsm  --sensor hdl32 --speed 1.4 --mount-height 1.2 --wobble 4 --wobble-frequency 0.8   # NCLT-like
 there_and_back   route  osm,dsm  --there-and-back
 END
@@ -117,6 +118,20 @@ make_drive() {
   echo "${options[*]} $sources" >"$folder/made"
 }
 
+# The truth without the scans of a kidnapping: where an estimate should be is known there, but nobody can map there.
+own_street() {
+  awk -F, 'NR == 1 { marked = $NF == "kidnapped" } !marked || $NF != 1' "$1/trajectory.csv" >"$1/own_street.csv"
+  echo "$1/own_street.csv"
+}
+
+# How many scans after a kidnapping the first is called lost, how many after its end the first is anchored.
+kidnap_note() {
+  awk -F, 'NR == FNR { if (FNR > 1 && $NF == 1) { if (!last) first = $1; last = $1 }; next }
+           FNR > 1 && $1 >= first && $NF == "lost" && lost == "" { lost = $1 - first + 1 }
+           FNR > 1 && $1 > last && $NF == "anchored" && back == "" { back = $1 - last }
+           END { if (last) printf " (lost in scan %s, anchored in scan %s after it)", lost == "" ? "none" : lost, back == "" ? "none" : back }' "$1" "$2"
+}
+
 # Maps the drive and prints its row.
 score() {
   local folder=$1 name=$2 preset=$3 truth=$1/drive/truth
@@ -124,13 +139,14 @@ score() {
   if [ -d "$folder/prior" ]; then
     mapper --preset "$preset" --scans "$folder/drive/velodyne" --prior "$folder/prior" --initial-pose "$(cat "$truth/initial_pose.txt")" \
       -o "$out" --overwrite >"$out.log"
-    against=(--reference "$truth/trajectory.csv" --estimate "$out/trajectory.csv")
+    against=(--reference "$(own_street "$truth")" --estimate "$out/trajectory.csv")
   else
     mapper --preset "$preset" --scans "$folder/drive/velodyne" -o "$out" --overwrite >"$out.log"
     against=(--reference "$truth/poses_kitti.txt" --estimate "$out/poses_kitti.txt" --align first)
     name+=" (from the first pose)"
   fi
-  evaltraj "${against[@]}" --json >"$out.json"
+  evaltraj "${against[@]}" --json --quiet >"$out.json"
+  name+=$(kidnap_note "$truth/trajectory.csv" "$out/trajectory.csv")
   rm -rf "$out/map"
   figure=()
   read_figures "$out.json"

@@ -55,12 +55,25 @@ struct RouteOptions {
   }
 };
 
+/// Scans of another street in the middle of the drive, as if the vehicle had been carried off and brought back to where it was.
+struct KidnapOptions {
+  int at_scan = 0;
+  int num_scans = 60;
+
+  template <class Visitor>
+  void describe(Visitor& visit) {
+    visit("kidnap-at", at_scan, {"scan before which scans of another street come in; 0: none", "", 0, 1e7});
+    visit("kidnap-scans", num_scans, {"how many of them", "", 1, 1e6});
+  }
+};
+
 struct DriveOptions {
   std::string town = "generated";            ///< or an OSM file
   std::optional<std::string> trajectory;     ///< poses to follow; none: a route along the streets
   std::string sensor = "hdl64";
   std::uint64_t seed = 1;
   RouteOptions route;
+  KidnapOptions kidnap;
   TownOptions town_options;
   SourceErrorOptions errors;
   PlatformOptions platform;
