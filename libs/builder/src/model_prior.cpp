@@ -1,9 +1,9 @@
 #include <priormap/builder/model_prior.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <iomanip>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
@@ -23,6 +23,7 @@
 #include "cloud_buffer.hpp"
 #include "model_faces.hpp"
 #include "model_frame.hpp"
+#include "model_sight.hpp"
 #include "wall_index.hpp"
 
 namespace priormap {
@@ -44,20 +45,29 @@ BuildingModelOptions reader_options(const ModelOptions& options) {
 class Survey {
  public:
   Survey(const PriorOptions& prior_options, const ModelOptions& model_options, const Events& events)
-      : prior_options_(prior_options), model_options_(model_options), events_(events) {}
+      : prior_options_(prior_options), model_options_(model_options), events_(events), sight_(model_options.sight) {}
 
   void read(const HashedFile& file) {
     read_models(file.path, reader_options(model_options_), [&](BuildingModel&& model) {
       if (model.polygons.empty()) return;
       if (!frames_) frames_ = std::make_unique<ModelFrames>(prior_options_, model, file.path.string(), events_);
       file_frame_.try_emplace(file.path.string(), frames_->source(model, file.path.string()));
-      if (!model_options_.visible_faces_only()) return;
+      const bool hides_views = model_options_.sight.is_active() && !model.terrain;
+      if (!model_options_.visible_faces_only() && !hides_views) return;
       frames_->to_prior(model, file.path.string());
       Diagnostics ignored;
-      for (const ModelFace& face : model_faces(model, ignored)) {
+      const std::vector<ModelFace> faces = model_faces(model, ignored);
+      if (hides_views) sight_.add(faces);
+      if (!model_options_.visible_faces_only()) return;
+      for (const ModelFace& face : faces) {
         if (face.surface_class != SurfaceClass::closure) walls_.add(face.polygon, face.normal);
       }
     });
+  }
+
+  /// Once, after the last `read`. Nothing without --visible-from.
+  std::optional<LineOfSight> line_of_sight() {
+    return model_options_.sight.is_active() ? std::optional(sight_.finish(frames_->prior())) : std::nullopt;
   }
 
   const WallIndex& walls() const { return walls_; }
@@ -74,47 +84,63 @@ class Survey {
   std::unique_ptr<ModelFrames> frames_;
   std::map<std::string, ModelSourceFrame> file_frame_;
   WallIndex walls_;
+  ModelSight sight_;
 };
 
 /// One thread's way from a building in the prior's CRS to its points.
 class ModelSampler {
  public:
-  ModelSampler(const WallIndex& walls, const Crs& prior, const PriorOptions& prior_options, const ModelOptions& model_options, PriorWriter& writer)
-      : walls_(walls), bbox_(prior_options, prior), visible_only_(model_options.visible_faces_only()), sigma_m_(model_options.sigma_m), writer_(writer),
+  ModelSampler(const WallIndex& walls, const LineOfSight* sight, const Crs& prior, const PriorOptions& prior_options, const ModelOptions& model_options, PriorWriter& writer)
+      : walls_(walls), sight_(sight), bbox_(prior_options, prior), visible_only_(model_options.visible_faces_only()), sigma_m_(model_options.sigma_m), writer_(writer),
         sampler_(prior_options.spacing_or(0.5)), buffer_(writer, static_cast<float>(model_options.sigma_m)) {}
 
-  /// @return whether a point of it lies inside the box
-  bool sample(const BuildingModel& model, const std::string& source_id, std::uint16_t source, Diagnostics& diagnostics) {
+  SightCounts sample(const BuildingModel& model, const std::string& source_id, std::uint16_t source, Diagnostics& diagnostics) {
     const std::vector<ModelFace> faces = model_faces(model, diagnostics);
+    collect_points(faces);
+    std::vector<bool> seen;
+    if (sight_) seen = sight_->seen(collected_, LineOfSight::Skin::open);
+
+    SightCounts counts;
     std::optional<std::uint32_t> feature;
-    for (const ModelFace& face : faces) {
+    for (std::size_t i = 0; i < collected_.points.size(); ++i) {
+      const Eigen::Vector3d& p = collected_.points[i];
+      if (bbox_.is_active() && !bbox_.contains(p.x(), p.y())) continue;
+      ++counts.sampled;
+      if (sight_ && !seen[i]) {
+        ++counts.out_of_sight;
+        continue;
+      }
+      if (!feature) {
+        feature = model.terrain ? PointCloud::no_feature : writer_.add_feature(feature_of(model, faces, source_id));
+        buffer_.begin(source, *feature, model.terrain ? PointClass::ground : PointClass::building);
+      }
+      buffer_.add(p, collected_.normals[i]);
+    }
+    return counts;
+  }
+  void flush() { buffer_.flush(); }
+
+ private:
+  void collect_points(const std::vector<ModelFace>& faces) {
+    collected_.clear();
+    for (std::uint32_t number = 0; number < faces.size(); ++number) {
+      const ModelFace& face = faces[number];
       if (visible_only_ && !can_be_seen(face)) continue;
       points_.clear();
       normals_.clear();
       if (face.planar) {
         sampler_.sample(face.polygon, points_);
+        if (visible_only_) walls_.remove_shared(face.normal, points_);
         normals_.assign(points_.size(), face.normal);
       } else {
         sampler_.sample(triangulate(face.polygon), points_, normals_);
       }
-      if (visible_only_ && face.planar) {
-        walls_.remove_shared(face.normal, points_);
-        normals_.resize(points_.size());
-      }
-      for (std::size_t i = 0; i < points_.size(); ++i) {
-        if (bbox_.is_active() && !bbox_.contains(points_[i].x(), points_[i].y())) continue;
-        if (!feature) {
-          feature = model.terrain ? PointCloud::no_feature : writer_.add_feature(feature_of(model, faces, source_id));
-          buffer_.begin(source, *feature, model.terrain ? PointClass::ground : PointClass::building);
-        }
-        buffer_.add(points_[i], normals_[i]);
-      }
+      collected_.points.insert(collected_.points.end(), points_.begin(), points_.end());
+      collected_.normals.insert(collected_.normals.end(), normals_.begin(), normals_.end());
+      collected_.faces.resize(collected_.points.size(), number);
     }
-    return feature.has_value();
   }
-  void flush() { buffer_.flush(); }
 
- private:
   Feature feature_of(const BuildingModel& model, const std::vector<ModelFace>& faces, const std::string& source_id) const {
     Feature feature;
     feature.source = source_id;
@@ -135,37 +161,40 @@ class ModelSampler {
   }
 
   const WallIndex& walls_;
+  const LineOfSight* sight_;
   BboxFilter bbox_;
   bool visible_only_;
   double sigma_m_;
   PriorWriter& writer_;
   FaceSampler sampler_;
   CloudBuffer buffer_;
+  FacePoints collected_;
   std::vector<Eigen::Vector3d> points_, normals_;
 };
 
 /// Second pass: buildings in batches, each batch sampled by all threads.
 class Sampling {
  public:
-  Sampling(const Survey& survey, ModelFrames& frames, const PriorOptions& prior_options, const ModelOptions& model_options, PriorWriter& writer, int threads)
-      : survey_(survey), frames_(frames), prior_options_(prior_options), model_options_(model_options), writer_(writer), threads_(threads) {}
+  Sampling(const Survey& survey, const LineOfSight* sight, ModelFrames& frames, const PriorOptions& prior_options, const ModelOptions& model_options, PriorWriter& writer, int threads)
+      : survey_(survey), sight_(sight), frames_(frames), prior_options_(prior_options), model_options_(model_options), writer_(writer), threads_(threads) {}
 
-  void read(const HashedFile& file, const std::string& source_id, std::uint16_t source, ModelReport& report) {
+  SightCounts read(const HashedFile& file, const std::string& source_id, std::uint16_t source, ModelReport& report) {
+    SightCounts points;
     const auto finish_batch = [&] {
       std::vector<Diagnostics> diagnostics(batch_.size());
-      std::atomic<std::size_t> buildings{0}, terrain{0};
+      std::vector<SightCounts> of_building(batch_.size());
       for_each_chunk(
           batch_.size(), 16, threads_,
-          [&] { return std::make_unique<ModelSampler>(survey_.walls(), frames_.prior(), prior_options_, model_options_, writer_); },
+          [&] { return std::make_unique<ModelSampler>(survey_.walls(), sight_, frames_.prior(), prior_options_, model_options_, writer_); },
           [&](auto& sampler, std::size_t, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-              if (sampler->sample(batch_[i], source_id, source, diagnostics[i])) ++(batch_[i].terrain ? terrain : buildings);
-            }
+            for (std::size_t i = begin; i < end; ++i) of_building[i] = sampler->sample(batch_[i], source_id, source, diagnostics[i]);
             sampler->flush();
           });
-      for (const Diagnostics& of_building : diagnostics) report.diagnostics.merge(of_building);
-      report.buildings += buildings;
-      report.terrain_models += terrain;
+      for (std::size_t i = 0; i < batch_.size(); ++i) {
+        report.diagnostics.merge(diagnostics[i]);
+        if (of_building[i].sampled > 0) ++(batch_[i].terrain ? report.terrain_models : report.buildings);
+        points += of_building[i];
+      }
       batch_.clear();
     };
     read_models(file.path, reader_options(model_options_), [&](BuildingModel&& model) {
@@ -180,10 +209,12 @@ class Sampling {
       if (batch_.size() == batch_size) finish_batch();
     });
     finish_batch();
+    return points;
   }
 
  private:
   const Survey& survey_;
+  const LineOfSight* sight_;
   ModelFrames& frames_;
   const PriorOptions& prior_options_;
   const ModelOptions& model_options_;
@@ -245,16 +276,22 @@ ModelReport build_model_prior(const std::vector<std::filesystem::path>& inputs, 
   PriorWriter writer(output, manifest, overwrite);
 
   ModelReport report;
-  Sampling sampling(survey, *survey.frames(), prior_options, model_options, writer, threads);
+  const std::optional<LineOfSight> sight = survey.line_of_sight();
+  Sampling sampling(survey, sight ? &*sight : nullptr, *survey.frames(), prior_options, model_options, writer, threads);
+  SightCounts points;
   for (std::size_t i = 0; i < with_models.size(); ++i) {
     const std::size_t before = report.buildings;
-    sampling.read(*with_models[i], manifest.sources[i].id, static_cast<std::uint16_t>(i), report);
+    const SightCounts points_here = sampling.read(*with_models[i], manifest.sources[i].id, static_cast<std::uint16_t>(i), report);
+    points += points_here;
     manifest.sources[i].facts.emplace_back("buildings", std::to_string(report.buildings - before));
+    std::ranges::move(sight_facts(model_options.sight, points_here), std::back_inserter(manifest.sources[i].facts));
   }
   if (report.buildings + report.terrain_models == 0) {
     throw FormatError(files.front().path, prior_options.bbox.empty() ? "none of its buildings could be built"
                                                                      : "no building lies inside --bbox (W,S,E,N in " + prior_options.bbox_crs + ")");
   }
+  if (prior_options.bbox.empty()) model_options.sight.refuse_blindness(points);   // a box may well hold nothing that is seen
+  if (sight) report.sight = points;
   writer.set_sources(manifest.sources);
   report.manifest = writer.finish(threads, events);
   return report;
@@ -267,6 +304,7 @@ std::string to_text(const ModelReport& report) {
   line("polygons", report.polygons);
   line("terrain models", report.terrain_models);
   line("points", report.manifest.num_points);
+  if (report.sight) line("points out of sight", to_text(*report.sight));
   line("tiles", report.manifest.num_tiles);
   line("crs", report.manifest.crs);
   line("vertical", report.manifest.vertical.value_or("null"));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iomanip>
+#include <iterator>
 #include <sstream>
 
 #include <priormap/builder/prior_crs.hpp>
@@ -103,11 +104,20 @@ OutlineReport build_outline_prior(OutlineInput input, const PriorOptions& prior_
   for (Building& building : buildings) building.feature.source = sources[building.file].id;
   for (std::size_t i = 0; i < sources.size(); ++i) sources[i].facts = facts_of(count(buildings, parts, static_cast<std::uint16_t>(i)), outline_options);
   const OutlineCounts counts = count(buildings, parts, std::nullopt);
-  if (write_points(std::move(buildings), frames.prior, prior_options, outline_options, writer, threads, events) == 0)
+  const std::optional<LineOfSight> sight = line_of_sight(buildings, frames, outline_options.sight);
+  const std::vector<SightCounts> sight_by_file =
+      write_points(std::move(buildings), sight ? &*sight : nullptr, frames.prior, prior_options, outline_options, sources.size(), writer, threads, events);
+  SightCounts points;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    points += sight_by_file[i];
+    std::ranges::move(sight_facts(outline_options.sight, sight_by_file[i]), std::back_inserter(sources[i].facts));
+  }
+  if (points.sampled == 0)
     throw FormatError(input.files.front().path, prior_options.bbox.empty() ? "none of its buildings could be built"
                                                                            : "no building lies inside --bbox (W,S,E,N in " + prior_options.bbox_crs + ")");
+  if (prior_options.bbox.empty()) outline_options.sight.refuse_blindness(points);   // a box may well hold nothing that is seen
   writer.set_sources(sources);
-  return {writer.finish(threads, events), counts, std::move(diagnostics)};
+  return {writer.finish(threads, events), counts, sight ? std::optional(points) : std::nullopt, std::move(diagnostics)};
 }
 
 std::string to_text(const OutlineReport& report) {
@@ -118,6 +128,7 @@ std::string to_text(const OutlineReport& report) {
   line("outlines replaced by parts", report.counts.replaced);
   for (int rule = 0; rule < num_height_rules; ++rule) line("heights by " + to_string(HeightRule(rule)), report.counts.by_rule[static_cast<std::size_t>(rule)]);
   line("points", report.manifest.num_points);
+  if (report.sight) line("points out of sight", to_text(*report.sight));
   line("tiles", report.manifest.num_tiles);
   line("crs", report.manifest.crs);
   line("vertical", report.manifest.vertical.value_or("null"));

@@ -3,6 +3,7 @@
 
 #include <priormap/builder/building_parts.hpp>
 #include <priormap/builder/building_solid.hpp>
+#include <priormap/builder/line_of_sight.hpp>
 #include <priormap/prior/feature.hpp>
 #include <priormap/prior/prior_writer.hpp>
 
@@ -27,8 +28,13 @@ struct Building {
 std::vector<Building> raise_buildings(const std::vector<ProjectedFootprint>& footprints, const PartAssignment& parts, const OutlineFrames& frames,
                                       const OutlineOptions& options, int threads, Diagnostics& diagnostics);
 
-/// Samples all faces and hands the points to the writer. @return number of points
-std::size_t write_points(std::vector<Building> buildings, const Crs& prior, const PriorOptions& prior_options, const OutlineOptions& outline_options,
-                         PriorWriter& writer, int threads, const Events& events);
+/// What is seen from --visible-from: buildings hide each other, one whose height is a guess only up to half of it. Nothing without that option.
+std::optional<LineOfSight> line_of_sight(const std::vector<Building>& buildings, const OutlineFrames& frames, const SightOptions& options);
+
+/// Samples all faces and hands the points to the writer.
+/// @param sight  none: all points count as seen
+/// @return by file, the points inside --bbox and those of them left out as never seen
+std::vector<SightCounts> write_points(std::vector<Building> buildings, const LineOfSight* sight, const Crs& prior, const PriorOptions& prior_options,
+                                      const OutlineOptions& outline_options, std::size_t num_files, PriorWriter& writer, int threads, const Events& events);
 
 }  // namespace priormap

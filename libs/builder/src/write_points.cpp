@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <span>
 
 #include <priormap/builder/bbox_filter.hpp>
 #include <priormap/builder/solid_index.hpp>
@@ -40,42 +41,63 @@ struct SolidRow {
 /// One thread's way from a building to its points.
 class BuildingSampler {
  public:
-  BuildingSampler(const SolidRow& row, const SolidIndex& index, const std::vector<Building>& buildings, const Crs& prior, const PriorOptions& prior_options,
-                  const OutlineOptions& outline_options, PriorWriter& writer)
-      : row_(row), index_(index), buildings_(buildings), bbox_(prior_options, prior), visible_only_(outline_options.visible_faces_only()),
+  BuildingSampler(const SolidRow& row, const SolidIndex& index, const std::vector<Building>& buildings, const LineOfSight* sight, const Crs& prior,
+                  const PriorOptions& prior_options, const OutlineOptions& outline_options, PriorWriter& writer)
+      : row_(row), index_(index), buildings_(buildings), sight_(sight), bbox_(prior_options, prior), visible_only_(outline_options.visible_faces_only()),
         writer_(writer), sampler_(prior_options.spacing_or(0.5)), buffer_(writer, static_cast<float>(outline_options.sigma_m)) {}
 
-  std::size_t sample(std::uint32_t building) {
+  SightCounts sample(std::uint32_t building) {
+    const std::span solids(row_.solids.begin() + row_.first_of[building], row_.solids.begin() + row_.first_of[building + 1]);
+    if (bbox_.outer() && std::ranges::none_of(solids, [&](const BuildingSolid& solid) { return meet(*bbox_.outer(), solid.bounds); })) return {};
+    collect_points(building);
+    std::vector<bool> seen;
+    if (sight_) seen = sight_->seen(collected_, solids.front().has_walls ? LineOfSight::Skin::closed : LineOfSight::Skin::open);
+
+    SightCounts counts;
     bool known = false;
-    std::size_t num_points = 0;
+    for (std::size_t i = 0; i < collected_.points.size(); ++i) {
+      const Eigen::Vector3d& p = collected_.points[i];
+      if (bbox_.is_active() && !bbox_.contains(p.x(), p.y())) continue;
+      ++counts.sampled;
+      if (sight_ && !seen[i]) {
+        ++counts.out_of_sight;
+        continue;
+      }
+      if (!known) buffer_.begin(buildings_[building].file, writer_.add_feature(buildings_[building].feature));
+      known = true;
+      buffer_.add(p, collected_.normals[i]);
+    }
+    return counts;
+  }
+  void flush() { buffer_.flush(); }
+
+ private:
+  void collect_points(std::uint32_t building) {
+    collected_.clear();
+    std::uint32_t number = 0;
     for (std::uint32_t solid = row_.first_of[building]; solid < row_.first_of[building + 1]; ++solid) {
-      if (bbox_.outer() && !meet(*bbox_.outer(), row_.solids[solid].bounds)) continue;
       const std::vector<std::uint32_t> neighbors = visible_only_ ? index_.near(solid) : std::vector<std::uint32_t>{};
       for (const Face& face : row_.solids[solid].faces(!visible_only_)) {
         points_.clear();
         const Eigen::Vector3d normal = sampler_.sample(face.polygon, points_);
         if (!neighbors.empty()) index_.remove_hidden(face, normal, neighbors, points_);
-        if (bbox_.is_active()) std::erase_if(points_, [&](const Eigen::Vector3d& p) { return !bbox_.contains(p.x(), p.y()); });
-        if (points_.empty()) continue;
-        if (!known) buffer_.begin(buildings_[building].file, writer_.add_feature(buildings_[building].feature));
-        known = true;
-        for (const Eigen::Vector3d& p : points_) buffer_.add(p, normal);
-        num_points += points_.size();
+        collected_.points.insert(collected_.points.end(), points_.begin(), points_.end());
+        collected_.normals.resize(collected_.points.size(), normal);
+        collected_.faces.resize(collected_.points.size(), number++);
       }
     }
-    return num_points;
   }
-  void flush() { buffer_.flush(); }
 
- private:
   const SolidRow& row_;
   const SolidIndex& index_;
   const std::vector<Building>& buildings_;
+  const LineOfSight* sight_;
   BboxFilter bbox_;
   bool visible_only_;
   PriorWriter& writer_;
   FaceSampler sampler_;
   CloudBuffer buffer_;
+  FacePoints collected_;
   std::vector<Eigen::Vector3d> points_;
 };
 
@@ -92,21 +114,24 @@ SolidRow solids_in_a_row(std::vector<Building>& buildings) {
 
 }  // namespace
 
-std::size_t write_points(std::vector<Building> buildings, const Crs& prior, const PriorOptions& prior_options, const OutlineOptions& outline_options,
-                         PriorWriter& writer, int threads, const Events& events) {
+std::vector<SightCounts> write_points(std::vector<Building> buildings, const LineOfSight* sight, const Crs& prior, const PriorOptions& prior_options,
+                                      const OutlineOptions& outline_options, std::size_t num_files, PriorWriter& writer, int threads, const Events& events) {
   const std::vector<std::uint32_t> order = order_by_place(buildings);
   const SolidRow row = solids_in_a_row(buildings);
   const SolidIndex index(row.solids);
-  std::atomic<std::size_t> num_points{0}, num_done{0};
+  std::vector<SightCounts> of_building(buildings.size());
+  std::atomic<std::size_t> num_done{0};
   for_each_chunk(
       order.size(), chunk_size, threads,
-      [&] { return std::make_unique<BuildingSampler>(row, index, buildings, prior, prior_options, outline_options, writer); },
+      [&] { return std::make_unique<BuildingSampler>(row, index, buildings, sight, prior, prior_options, outline_options, writer); },
       [&](auto& sampler, std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) num_points += sampler->sample(order[i]);
+        for (std::size_t i = begin; i < end; ++i) of_building[order[i]] = sampler->sample(order[i]);
         sampler->flush();
         events.advance("sampling buildings", static_cast<double>(num_done += end - begin) / static_cast<double>(order.size()));
       });
-  return num_points;
+  std::vector<SightCounts> by_file(num_files);
+  for (std::size_t i = 0; i < buildings.size(); ++i) by_file[buildings[i].file] += of_building[i];
+  return by_file;
 }
 
 }  // namespace priormap

@@ -29,6 +29,29 @@ void attach(RTCDevice device, RTCScene scene, const TriangleMesh& mesh, const Ei
   rtcReleaseGeometry(geometry);
 }
 
+RTCIntersectContext coherent_context() {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  return context;
+}
+
+/// Packet lane `k`: the stretch of `origin + t direction` with t in [0, far].
+void set_ray(RTCRay16& ray, std::size_t k, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float far) {
+  ray.org_x[k] = origin.x();
+  ray.org_y[k] = origin.y();
+  ray.org_z[k] = origin.z();
+  ray.dir_x[k] = direction.x();
+  ray.dir_y[k] = direction.y();
+  ray.dir_z[k] = direction.z();
+  ray.tnear[k] = 0;
+  ray.tfar[k] = far;
+  ray.time[k] = 0;
+  ray.mask[k] = 0xffffffffu;
+  ray.id[k] = static_cast<unsigned>(k);
+  ray.flags[k] = 0;
+}
+
 }  // namespace
 
 struct RayScene::Impl {
@@ -62,9 +85,7 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 const Eigen::Vector3d& RayScene::origin() const { return impl_->origin; }
 
 void RayScene::cast(std::span<const Ray> rays, float max_range_m, std::span<RayHit> hits) const {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  RTCIntersectContext context = coherent_context();
   alignas(64) int valid[packet_size];
   alignas(64) RTCRayHit16 packet;
   for (std::size_t first = 0; first < rays.size(); first += packet_size) {
@@ -72,18 +93,7 @@ void RayScene::cast(std::span<const Ray> rays, float max_range_m, std::span<RayH
     for (std::size_t k = 0; k < packet_size; ++k) {
       const Ray& ray = rays[first + std::min(k, count - 1)];
       valid[k] = k < count ? -1 : 0;
-      packet.ray.org_x[k] = ray.origin.x();
-      packet.ray.org_y[k] = ray.origin.y();
-      packet.ray.org_z[k] = ray.origin.z();
-      packet.ray.dir_x[k] = ray.direction.x();
-      packet.ray.dir_y[k] = ray.direction.y();
-      packet.ray.dir_z[k] = ray.direction.z();
-      packet.ray.tnear[k] = 0;
-      packet.ray.tfar[k] = max_range_m;
-      packet.ray.time[k] = 0;
-      packet.ray.mask[k] = 0xffffffffu;
-      packet.ray.id[k] = static_cast<unsigned>(k);
-      packet.ray.flags[k] = 0;
+      set_ray(packet.ray, k, ray.origin, ray.direction, max_range_m);
       packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
       packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
     }
@@ -95,6 +105,22 @@ void RayScene::cast(std::span<const Ray> rays, float max_range_m, std::span<RayH
                Eigen::Vector3f(packet.hit.Ng_x[k], packet.hit.Ng_y[k], packet.hit.Ng_z[k]).normalized()};
       hits[first + k] = hit;
     }
+  }
+}
+
+void RayScene::cast(std::span<const Segment> segments, std::span<std::uint8_t> blocked) const {
+  RTCIntersectContext context = coherent_context();
+  alignas(64) int valid[packet_size];
+  alignas(64) RTCRay16 packet;
+  for (std::size_t first = 0; first < segments.size(); first += packet_size) {
+    const std::size_t count = std::min(packet_size, segments.size() - first);
+    for (std::size_t k = 0; k < packet_size; ++k) {
+      const Segment& segment = segments[first + std::min(k, count - 1)];
+      valid[k] = k < count ? -1 : 0;
+      set_ray(packet, k, segment.from, segment.to - segment.from, 1);
+    }
+    rtcOccluded16(valid, impl_->scene, &context, &packet);
+    for (std::size_t k = 0; k < count; ++k) blocked[first + k] = packet.tfar[k] < 0;
   }
 }
 

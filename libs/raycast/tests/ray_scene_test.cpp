@@ -74,12 +74,35 @@ TEST(RayScene, NearestMeshWinsAndRangeIsLimited) {
   EXPECT_TRUE(hits[1].hit());
 }
 
+TEST(RayScene, ASegmentIsBlockedWhereTheRayAlongItHitsBeforeItsEnd) {
+  const Eigen::Vector3d min(10, -4, -2), max(14, 5, 6);
+  const std::vector<TriangleMesh> meshes{box(utm_origin + min, utm_origin + max)};
+  const RayScene scene(meshes, utm_origin);
+  std::vector<Segment> segments;
+  std::vector<std::uint8_t> expected;
+  for (int i = 0; i < 501; ++i) {
+    const double azimuth = -1.0 + 0.004 * i, length = 8 + 0.02 * i;
+    const Eigen::Vector3d direction(std::cos(azimuth), std::sin(azimuth), 0);
+    segments.push_back({Eigen::Vector3f::Zero(), (length * direction).cast<float>()});
+    expected.push_back(slab_range(direction, min, max) < length);
+  }
+  std::vector<std::uint8_t> blocked(segments.size(), 2);
+  scene.cast(segments, blocked);
+  EXPECT_EQ(blocked, expected);
+  for (Segment& segment : segments) std::swap(segment.from, segment.to);
+  scene.cast(segments, blocked);
+  EXPECT_EQ(blocked, expected) << "whichever way";
+}
+
 TEST(RayScene, EmptySceneHasNoHits) {
   const RayScene scene({}, Eigen::Vector3d::Zero());
   const std::vector<Ray> rays(5);
   std::vector<RayHit> hits(5);
   scene.cast(rays, 100, hits);
   for (const RayHit& hit : hits) EXPECT_FALSE(hit.hit());
+  std::vector<std::uint8_t> blocked(5, 1);
+  scene.cast(std::vector<Segment>(5), blocked);
+  EXPECT_EQ(blocked, std::vector<std::uint8_t>(5, 0));
 }
 
 }  // namespace

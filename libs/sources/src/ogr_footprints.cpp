@@ -1,33 +1,16 @@
 #include <priormap/sources/ogr_footprints.hpp>
 
-#include <gdal_priv.h>
-#include <ogrsf_frmts.h>
-
 #include <memory>
 
 #include <priormap/core/error.hpp>
 #include <priormap/sources/osm_tags.hpp>
 
-#include "gdal_support.hpp"
+#include "ogr_layers.hpp"
 
 namespace priormap {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct CloseDataset {
-  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
-
-Dataset open_vector(const fs::path& file) {
-  std::error_code ignored;
-  const std::string name = file.string();
-  if (!name.starts_with("/vsi") && !fs::exists(file, ignored)) throw IoError(file, "no such file");
-  if (auto* dataset = GDALDataset::Open(name.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY)) return Dataset(dataset);
-  const std::string cause = QuietGdal::message();
-  throw FormatError(file, "is no vector file that GDAL reads" + (cause.empty() ? "" : " (" + cause + ")"));
-}
 
 bool may_hold_polygons(OGRLayer& layer) {
   const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
@@ -57,12 +40,6 @@ int field_index(OGRLayer& layer, const std::string& name, const fs::path& file) 
   std::string known;
   for (int i = 0; i < definition.GetFieldCount(); ++i) known += (i ? ", " : "") + std::string(definition.GetFieldDefn(i)->GetNameRef());
   throw FormatError(file, "layer '" + std::string(layer.GetName()) + "' has no field '" + name + "'; it has: " + known);
-}
-
-/// Whether the layer's coordinates come north before east.
-bool north_comes_first(OGRLayer& layer, const Crs& crs) {
-  const std::vector<int>& axes = layer.GetSpatialRef()->GetDataAxisToSRSAxisMapping();
-  return axes.size() >= 2 && (axes[0] == 1) == crs.authority_north_first();
 }
 
 void add_ring(const OGRLinearRing* ring, bool swap_axes, std::vector<Ring2>& rings) {
@@ -141,7 +118,7 @@ void read_layer(OGRLayer& layer, const fs::path& file, const FootprintFields& na
 FootprintLayers read_ogr_footprints(const fs::path& file, const FootprintFields& fields, Diagnostics& diagnostics) {
   register_gdal();
   const QuietGdal quiet;
-  const Dataset dataset = open_vector(file);
+  const VectorDataset dataset = open_vector(file);
   FootprintLayers result;
   for (OGRLayer* layer : chosen_layers(*dataset, file, fields.layer)) read_layer(*layer, file, fields, result, diagnostics);
   return result;

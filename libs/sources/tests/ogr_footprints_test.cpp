@@ -5,6 +5,7 @@
 #include <fstream>
 #include <priormap/core/error.hpp>
 #include <priormap/sources/ogr_footprints.hpp>
+#include <priormap/sources/ogr_lines.hpp>
 #include <priormap/tessellation/normalize.hpp>
 
 namespace priormap {
@@ -104,6 +105,26 @@ TEST_F(OgrFootprints, EveryFormatGivesTheSameOutlines) {
       EXPECT_NEAR(found_area, expected_area, 1e-15) << name;
     }
   }
+}
+
+TEST_F(OgrFootprints, LinesAndPointsOfATrackEastBeforeNorth) {
+  const fs::path file = write_features(feature(R"("verdict":"anchored")", R"({"type":"LineString","coordinates":[[11,48,500],[11.001,48,500],[11.001,48.002,501]]})") + "," +
+                                       feature("", R"({"type":"MultiLineString","coordinates":[[[12,49],[12.1,49]],[[13,49],[13.1,49]]]})") + "," +
+                                       feature("", R"({"type":"Point","coordinates":[14,50]})") + "," + feature("", square));
+  const LineLayers layers = read_ogr_lines(file);
+  ASSERT_EQ(layers.lines.size(), 4u) << "polygons are no lines";
+  ASSERT_EQ(layers.lines[0].size(), 3u);
+  EXPECT_EQ(layers.lines[0][2], Eigen::Vector2d(11.001, 48.002));
+  EXPECT_EQ(layers.lines[2][0], Eigen::Vector2d(13, 49));
+  EXPECT_EQ(layers.lines[3], Polyline2{Eigen::Vector2d(14, 50)});
+  ASSERT_TRUE(layers.crs);
+  EXPECT_TRUE(layers.crs->is_geographic());
+}
+
+TEST_F(OgrFootprints, TracksWithoutALineAreNamed) {
+  EXPECT_THROW(read_ogr_lines(folder_ / "absent.geojson"), IoError);
+  EXPECT_THROW(read_ogr_lines(write("text.geojson", "no map")), FormatError);
+  EXPECT_THROW(read_ogr_lines(write_features(feature("", square))), FormatError);
 }
 
 TEST_F(OgrFootprints, TheFootprintsOfGothenburg) {

@@ -1,9 +1,11 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <priormap/builder/prior_options.hpp>
+#include <priormap/builder/sight_options.hpp>
 #include <priormap/core/atomic_output.hpp>
 #include <priormap/core/diagnostics.hpp>
 #include <priormap/core/events.hpp>
@@ -16,12 +18,14 @@ struct ModelOptions {
   int lod = 0;
   std::string faces = "visible";
   double sigma_m = 0.3;
+  SightOptions sight;
 
   template <class Visitor>
   void describe(Visitor& visit) {
     visit("lod", lod, {"only this level of detail; 0: of each building the highest", "", 0, 4});
     visit("faces", faces, {"visible or all: visible leaves out walls that buildings share, undersides and floors"});
     visit("sigma", sigma_m, {"standard deviation of the models' surfaces", "m", 0.001, 100});
+    sight.describe(visit);
   }
 
   bool visible_faces_only() const { return faces == "visible"; }
@@ -34,6 +38,7 @@ struct ModelReport {
   std::size_t buildings = 0;
   std::size_t polygons = 0;
   std::size_t terrain_models = 0;
+  std::optional<SightCounts> sight;   ///< with --visible-from
   Diagnostics diagnostics;
 };
 

@@ -2,6 +2,7 @@
 #include <optional>
 #include <string>
 
+#include <priormap/builder/sight_options.hpp>
 #include <priormap/core/option_field.hpp>
 
 namespace priormap {
@@ -15,6 +16,7 @@ struct OutlineOptions {
   std::string heights_from;               ///< raster of the surface; empty: none
   std::string faces = "visible";          ///< or "all"
   double sigma_m = 1;
+  SightOptions sight;
 
   template <class Visitor>
   void describe(Visitor& visit) {
@@ -25,6 +27,7 @@ struct OutlineOptions {
     visit("heights-from", heights_from, {"raster of the surface, such as DSM.tif: height of a building without a height tag, from the 70th percentile inside its outline"});
     visit("faces", faces, {"visible or all: visible leaves out walls that buildings share, undersides and floors"});
     visit("sigma", sigma_m, {"standard deviation of the outlines' positions", "m", 0.001, 100});
+    sight.describe(visit);
   }
 
   bool visible_faces_only() const { return faces == "visible"; }

@@ -42,6 +42,7 @@ struct OutlineCounts {
 struct OutlineReport {
   PriorManifest manifest;      ///< as written
   OutlineCounts counts;
+  std::optional<SightCounts> sight;   ///< with --visible-from
   Diagnostics diagnostics;     ///< those given, and those met while building
 };
 

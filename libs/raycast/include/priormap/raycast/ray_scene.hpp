@@ -24,6 +24,12 @@ struct RayHit {
   bool hit() const { return range_m < std::numeric_limits<float>::infinity(); }
 };
 
+/// From one place to another, relative to the scene's origin [m].
+struct Segment {
+  Eigen::Vector3f from = Eigen::Vector3f::Zero();
+  Eigen::Vector3f to = Eigen::Vector3f::Zero();
+};
+
 /// Triangle meshes that rays can be cast against (Embree). Coordinates are float32 relative to `origin`: keep it near the meshes
 /// (0.1 mm within 1 km). Immutable: safe to cast from several threads. The hits depend on nothing but meshes and rays.
 class RayScene {
@@ -38,6 +44,8 @@ class RayScene {
   /// Nearest hit of each ray within `max_range_m`; `hits` is as long as `rays`. Fastest when neighbours in the list are
   /// neighbours in space: they travel in packets of 16.
   void cast(std::span<const Ray> rays, float max_range_m, std::span<RayHit> hits) const;
+  /// Whether any triangle crosses each segment: 1 or 0; `blocked` is as long as `segments`.
+  void cast(std::span<const Segment> segments, std::span<std::uint8_t> blocked) const;
 
  private:
   struct Impl;
