@@ -119,14 +119,14 @@ PriorSource source_of(const RasterInput& input, const RasterPoints& points, cons
   return source;
 }
 
-/// What one thread needs to turn blocks of a raster into points of the prior.
-class BlockWorker {
+/// What one thread needs to turn a raster into points of the prior.
+class AreaWorker {
  public:
-  BlockWorker(const RasterPoints& points, const BboxFilter& bbox, const std::vector<HeightRaster>& preferred) : points_(points), bbox_(bbox), preferred_(preferred) {}
+  AreaWorker(const RasterPoints& points, const BboxFilter& bbox, const std::vector<HeightRaster>& preferred) : points_(points), bbox_(bbox), preferred_(preferred) {}
 
   /// Calls visit(points) with those that belong to the prior.
-  void read(std::size_t block, const std::function<void(PointCloud&)>& visit) {
-    points_.read_block(block, [&](PointCloud& cloud) {
+  void read(const Bounds2& area, const std::function<void(PointCloud&)>& visit) {
+    points_.read(area, [&](PointCloud& cloud) {
       if (!bbox_.is_active() && preferred_.empty()) return visit(cloud);
       PointCloud kept = kept_of(cloud);
       if (!kept.empty()) visit(kept);
@@ -152,28 +152,28 @@ class BlockWorker {
 /// Lends one worker to each thread that asks.
 class WorkerPool {
  public:
-  explicit WorkerPool(const BlockWorker& first) : prototype_(first) {}
+  explicit WorkerPool(const AreaWorker& first) : prototype_(first) {}
 
   template <class Use>
   void with_worker(Use&& use) {
-    std::unique_ptr<BlockWorker> worker = take();
+    std::unique_ptr<AreaWorker> worker = take();
     use(*worker);
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(worker));
   }
 
  private:
-  std::unique_ptr<BlockWorker> take() {
+  std::unique_ptr<AreaWorker> take() {
     const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<BlockWorker>(prototype_);
+    if (idle_.empty()) return std::make_unique<AreaWorker>(prototype_);
     auto worker = std::move(idle_.back());
     idle_.pop_back();
     return worker;
   }
 
   std::mutex mutex_;
-  const BlockWorker& prototype_;
-  std::vector<std::unique_ptr<BlockWorker>> idle_;
+  const AreaWorker& prototype_;
+  std::vector<std::unique_ptr<AreaWorker>> idle_;
 };
 
 /// Everything that the points of one raster have in common.
@@ -202,22 +202,73 @@ std::vector<HeightRaster> preferred_of(const std::vector<RasterInput>& inputs, s
   return preferred;
 }
 
-std::uint64_t write_raster(const BlockWorker& prototype, std::size_t num_blocks, const PointColumns& columns, PriorWriter& writer, int threads,
-                           const std::function<void(double)>& advance) {
+/// Squares of whole tiles, of some ten thousand points each, that cover an area; row by row from the north, as files are stored.
+class TileSquares {
+ public:
+  TileSquares(const Bounds2& area, double tile_size, double point_spacing) : tile_size_(tile_size) {
+    constexpr double points_along_edge = 256;
+    tiles_along_edge_ = static_cast<std::int32_t>(std::max(1.0, std::floor(points_along_edge * point_spacing / tile_size)));
+    if (area.empty()) return;
+    const double edge = tiles_along_edge_ * tile_size;
+    first_x_ = static_cast<std::int32_t>(std::floor(area.min_x / edge));
+    first_y_ = static_cast<std::int32_t>(std::floor(area.min_y / edge));
+    columns_ = static_cast<std::size_t>(std::floor(area.max_x / edge) - first_x_ + 1);
+    rows_ = static_cast<std::size_t>(std::floor(area.max_y / edge) - first_y_ + 1);
+  }
+
+  std::size_t size() const { return columns_ * rows_; }
+  /// The tiles of a square: keys from `first` to `last`, both included.
+  struct Tiles {
+    TileKey first, last;
+  };
+  Tiles tiles(std::size_t square) const {
+    const auto x = first_x_ + static_cast<std::int32_t>(square % columns_), y = first_y_ + static_cast<std::int32_t>(rows_ - 1 - square / columns_);
+    const TileKey first{x * tiles_along_edge_, y * tiles_along_edge_};
+    return {first, {first.x + tiles_along_edge_ - 1, first.y + tiles_along_edge_ - 1}};
+  }
+  Bounds2 bounds(const Tiles& tiles) const {
+    const TileGrid grid(tile_size_);
+    const Bounds2 low = grid.bounds(tiles.first), high = grid.bounds(tiles.last);
+    return {low.min_x, low.min_y, high.max_x, high.max_y};
+  }
+
+ private:
+  double tile_size_;
+  std::int32_t tiles_along_edge_ = 1, first_x_ = 0, first_y_ = 0;
+  std::size_t columns_ = 0, rows_ = 0;
+};
+
+/// Square by square; tiles that no later raster reaches are closed at once. @param later  where these lie
+std::uint64_t write_raster(const AreaWorker& prototype, const TileSquares& squares, const std::vector<Bounds2>& later, const PointColumns& columns,
+                           PriorWriter& writer, int threads, const std::function<void(double)>& advance) {
   WorkerPool pool(prototype);
   std::atomic<std::uint64_t> num_points = 0;
   std::atomic<std::size_t> done = 0;
-  parallel_for(num_blocks, threads, [&](std::size_t block) {
-    pool.with_worker([&](BlockWorker& worker) {
-      worker.read(block, [&](PointCloud& points) {
+  parallel_for(squares.size(), threads, [&](std::size_t i) {
+    const TileSquares::Tiles tiles = squares.tiles(i);
+    const Bounds2 area = squares.bounds(tiles);
+    pool.with_worker([&](AreaWorker& worker) {
+      worker.read(area, [&](PointCloud& points) {
         columns.fill(points);
         writer.add(points);
         num_points += points.size();
       });
     });
-    advance(static_cast<double>(++done) / static_cast<double>(num_blocks));
+    if (std::none_of(later.begin(), later.end(), [&](const Bounds2& other) { return overlap(area, other); }))
+      for (TileKey key = tiles.first; key.x <= tiles.last.x; ++key.x)
+        for (key.y = tiles.first.y; key.y <= tiles.last.y; ++key.y) writer.close_tile(key);
+    advance(static_cast<double>(++done) / static_cast<double>(squares.size()));
   });
   return num_points;
+}
+
+/// Where the points of a raster lie in the prior. @throws CrsError when that is not known
+Bounds2 area_of(const RasterInput& input, const RasterPoints& points, const BboxFilter& bbox, const Crs& prior) {
+  const std::optional<Bounds2>&whole = points.bounds(), &box = bbox.outer();
+  if (!whole && !box)
+    throw CrsError(input.file.string() + ": reaches beyond the domain of " + prior.name() + "; --bbox keeps a part of it, or --crs names another CRS");
+  if (!whole || !box) return whole ? *whole : *box;
+  return {std::max(whole->min_x, box->min_x), std::max(whole->min_y, box->min_y), std::min(whole->max_x, box->max_x), std::min(whole->max_y, box->max_y)};
 }
 
 PriorManifest manifest_of(const Crs& prior, const PriorOptions& options, const std::vector<PriorSource>& sources, double finest_cell, const std::string& generator) {
@@ -253,12 +304,13 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
   const std::vector<RasterInput> inputs = read_inputs(files, prior_options, threads);
   const Crs prior = prior_crs(inputs, prior_options, events);
   const BboxFilter bbox(prior_options, prior);
-  const RasterPointsOptions sampling{prior_options.spacing_m, bbox.outer()};
 
   std::vector<PriorSource> sources;
+  std::vector<Bounds2> areas;
   double finest_cell = 0;
   for (const RasterInput& input : inputs) {
-    const RasterPoints points(input.file, input.crs.crs, prior, sampling);
+    const RasterPoints points(input.file, input.crs.crs, prior, prior_options.spacing_m);
+    areas.push_back(area_of(input, points, bbox, prior));
     warn_of_inaccuracy(input, points.operation(), events);
     if (sources.empty()) finest_cell = points.cell_size();
     sources.push_back(source_of(input, points, prior_options, raster_options));
@@ -267,11 +319,13 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
 
   std::uint64_t num_points = 0;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const RasterPoints points(inputs[i].file, inputs[i].crs.crs, prior, sampling);
+    const RasterPoints points(inputs[i].file, inputs[i].crs.crs, prior, prior_options.spacing_m);
+    const TileSquares squares(areas[i], prior_options.tile_size_m, prior_options.spacing_or(points.cell_size()));
+    const std::vector<Bounds2> later(areas.begin() + static_cast<std::ptrdiff_t>(i) + 1, areas.end());
     const PointColumns columns{raster_options.kind == "terrain" ? PointClass::ground : PointClass::unclassified, static_cast<float>(*sources[i].sigma_m),
                                static_cast<std::uint16_t>(i)};
     const auto advance = [&](double fraction) { events.advance("reading rasters", (static_cast<double>(i) + fraction) / static_cast<double>(inputs.size())); };
-    const std::uint64_t written = write_raster(BlockWorker(points, bbox, preferred_of(inputs, i, prior)), points.num_blocks(), columns, writer, threads, advance);
+    const std::uint64_t written = write_raster(AreaWorker(points, bbox, preferred_of(inputs, i, prior)), squares, later, columns, writer, threads, advance);
     sources[i].facts = {{"kind", raster_options.kind}, {"cells", std::to_string(inputs[i].facts.width) + " x " + std::to_string(inputs[i].facts.height)}, {"points", std::to_string(written)}};
     num_points += written;
   }

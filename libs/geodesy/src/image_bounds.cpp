@@ -10,6 +10,8 @@ namespace {
 
 constexpr int edge_steps = 64, interior_steps = 8;
 
+using Mapping = std::function<void(std::span<Eigen::Vector3d>)>;
+
 struct Range {
   double min = std::numeric_limits<double>::infinity(), max = -std::numeric_limits<double>::infinity();
   double extent() const { return max - min; }
@@ -20,13 +22,13 @@ struct Edge {
   Range x, y;
 };
 
-std::optional<Edge> transformed_edge(const Eigen::Vector2d& begin, const Eigen::Vector2d& end, const Transformer& transformer) {
+std::optional<Edge> transformed_edge(const Eigen::Vector2d& begin, const Eigen::Vector2d& end, const Mapping& transform) {
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i <= edge_steps; ++i) {
     const Eigen::Vector2d p = begin + (end - begin) * (static_cast<double>(i) / edge_steps);
     points.emplace_back(p.x(), p.y(), 0);
   }
-  transformer.forward(points);
+  transform(points);
   Edge edge;
   for (const Eigen::Vector3d& p : points) {
     if (!p.allFinite()) return std::nullopt;
@@ -42,22 +44,22 @@ double margin(const Range& across, const Range& along) {
 }
 
 /// Points inside must come to lie inside: not where a rectangle of degrees goes around the Earth.
-bool encloses_interior(const Bounds2& b, const Bounds2& outer, const Transformer& transformer) {
+bool encloses_interior(const Bounds2& b, const Bounds2& outer, const Mapping& transform) {
   std::vector<Eigen::Vector3d> points;
   for (int i = 1; i < interior_steps; ++i)
     for (int j = 1; j < interior_steps; ++j)
       points.emplace_back(b.min_x + (b.max_x - b.min_x) * i / interior_steps, b.min_y + (b.max_y - b.min_y) * j / interior_steps, 0);
-  transformer.forward(points);
+  transform(points);
   return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector3d& p) { return outer.contains(p.x(), p.y()); });
 }
 
 }  // namespace
 
-std::optional<ImageBounds> image_bounds(const Bounds2& b, const Transformer& transformer) {
-  const auto west = transformed_edge({b.min_x, b.min_y}, {b.min_x, b.max_y}, transformer);
-  const auto east = transformed_edge({b.max_x, b.min_y}, {b.max_x, b.max_y}, transformer);
-  const auto south = transformed_edge({b.min_x, b.min_y}, {b.max_x, b.min_y}, transformer);
-  const auto north = transformed_edge({b.min_x, b.max_y}, {b.max_x, b.max_y}, transformer);
+std::optional<ImageBounds> image_bounds(const Bounds2& b, const Mapping& transform) {
+  const auto west = transformed_edge({b.min_x, b.min_y}, {b.min_x, b.max_y}, transform);
+  const auto east = transformed_edge({b.max_x, b.min_y}, {b.max_x, b.max_y}, transform);
+  const auto south = transformed_edge({b.min_x, b.min_y}, {b.max_x, b.min_y}, transform);
+  const auto north = transformed_edge({b.min_x, b.max_y}, {b.max_x, b.max_y}, transform);
   if (!west || !east || !south || !north) return std::nullopt;
 
   ImageBounds image;
@@ -69,8 +71,12 @@ std::optional<ImageBounds> image_bounds(const Bounds2& b, const Transformer& tra
   image.outer.min_y -= margin_y;
   image.outer.max_y += margin_y;
   image.inner = {west->x.max + margin_x, south->y.max + margin_y, east->x.min - margin_x, north->y.min - margin_y};
-  if (!encloses_interior(b, image.outer, transformer)) return std::nullopt;
+  if (!encloses_interior(b, image.outer, transform)) return std::nullopt;
   return image;
+}
+
+std::optional<ImageBounds> image_bounds(const Bounds2& b, const Transformer& transformer) {
+  return image_bounds(b, [&](std::span<Eigen::Vector3d> points) { transformer.forward(points); });
 }
 
 }  // namespace priormap

@@ -51,10 +51,16 @@ void radix_sort(std::vector<Keyed>& keys, int key_bits) {
   }
 }
 
+/// In order of position already, each position once.
+bool is_sorted(const std::vector<PointRecord>& points) {
+  const auto position = [](const PointRecord& p) { return std::tie(p.x, p.y, p.z); };
+  return std::adjacent_find(points.begin(), points.end(), [&](const PointRecord& a, const PointRecord& b) { return position(a) >= position(b); }) == points.end();
+}
+
 }  // namespace
 
 void sort_and_unite(std::vector<PointRecord>& points) {
-  if (points.size() < 2) return;
+  if (is_sorted(points)) return;
   int key_bits = 0;
   std::vector<Keyed> keys = position_keys(points, key_bits);
   constexpr std::size_t radix_pays = 256;

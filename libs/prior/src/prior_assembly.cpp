@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <memory>
 #include <numeric>
 
@@ -70,20 +71,21 @@ class TileDistributor {
 };
 
 /// Where each source goes when they are in order of precedence, then id.
-std::vector<std::uint16_t> order_sources(std::vector<PriorSource>& sources) {
+std::vector<std::uint16_t> order_of(const std::vector<PriorSource>& sources) {
   std::vector<std::uint16_t> order(sources.size());
   std::iota(order.begin(), order.end(), std::uint16_t(0));
   std::sort(order.begin(), order.end(), [&](std::uint16_t a, std::uint16_t b) {
     return std::tie(sources[a].precedence, sources[a].id) < std::tie(sources[b].precedence, sources[b].id);
   });
   std::vector<std::uint16_t> index(sources.size());
-  std::vector<PriorSource> ordered;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    index[order[i]] = std::uint16_t(i);
-    ordered.push_back(std::move(sources[order[i]]));
-  }
-  sources = std::move(ordered);
+  for (std::size_t i = 0; i < order.size(); ++i) index[order[i]] = std::uint16_t(i);
   return index;
+}
+
+std::vector<PriorSource> ordered(std::vector<PriorSource> sources, const std::vector<std::uint16_t>& index) {
+  std::vector<PriorSource> result(sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i) result[index[i]] = std::move(sources[i]);
+  return result;
 }
 
 void write_text(const std::filesystem::path& file, const std::string& text) {
@@ -108,11 +110,6 @@ std::optional<std::string> vertical_name(const std::string& crs_text) {
 
 }  // namespace
 
-struct PriorAssembly::TileResult {
-  TileEntry entry;
-  Eigen::Vector3d min, max;
-};
-
 PriorAssembly::PriorAssembly(const std::filesystem::path& directory, PriorManifest manifest, Overwrite overwrite,
                              std::size_t memory_bytes, double halo)
     : directory_(directory, overwrite, manifest_file_name),
@@ -121,8 +118,10 @@ PriorAssembly::PriorAssembly(const std::filesystem::path& directory, PriorManife
       wkt1_(checked_wkt1(manifest_.crs)),
       halo_steps_(to_lattice(halo)),
       tiles_(directory_.temporary_path(), memory_bytes),
-      features_(directory_.temporary_path()) {
+      features_(directory_.temporary_path()),
+      source_index_(order_of(manifest_.sources)) {
   manifest_.vertical = vertical_name(manifest_.crs);
+  std::filesystem::create_directory(directory_.temporary_path() / tiles_folder_name);
 }
 
 template <class Position>
@@ -172,20 +171,25 @@ std::uint32_t PriorAssembly::add_feature(const Feature& feature) { return featur
 
 void PriorAssembly::set_sources(std::vector<PriorSource> sources) {
   if (sources.size() < manifest_.sources.size()) throw Error("sources of a prior cannot be taken away while it is written");
+  std::vector<std::uint16_t> index = order_of(sources);
+  if (!closed_.empty() && index != source_index_) throw Error("sources of a prior cannot change places once a tile is closed");
   manifest_.sources = std::move(sources);
+  source_index_ = std::move(index);
 }
 
 void PriorAssembly::renumber(std::vector<PointRecord>& points) const {
   for (PointRecord& p : points) {
     p.source = source_index_[p.source];
-    if (p.feature != PointCloud::no_feature) p.feature = feature_index_[p.feature];
+    if (p.feature == PointCloud::no_feature) continue;
+    if (p.feature >= feature_index_.size()) throw Error("a tile with features cannot be closed before the prior is finished");
+    p.feature = feature_index_[p.feature];
   }
 }
 
 PriorAssembly::TileResult PriorAssembly::write_tile(TileKey key, const TileFilter& filter) {
   std::vector<PointRecord> points = tiles_.take(key);
   if (filter) filter(key, points);
-  std::erase_if(points, is_halo);
+  if (halo_steps_ > 0) std::erase_if(points, is_halo);
   renumber(points);
   sort_and_unite(points);
 
@@ -216,6 +220,13 @@ PriorAssembly::TileResult PriorAssembly::write_tile(TileKey key, const TileFilte
   return result;
 }
 
+void PriorAssembly::close_tile(TileKey key, const TileFilter& filter) {
+  TileResult tile = write_tile(key, filter);
+  if (tile.entry.num_points == 0) return;
+  const std::lock_guard lock(closed_mutex_);
+  if (!closed_.emplace(key, std::move(tile)).second) throw Error("points were added to a closed tile of the prior");
+}
+
 PriorManifest PriorAssembly::finish(int threads, const Events& events, const TileFilter& filter) {
   const std::filesystem::path& folder = directory_.temporary_path();
   const FeatureSpool::Written features = features_.write(folder / features_file_name, manifest_.crs, threads);
@@ -223,26 +234,24 @@ PriorManifest PriorAssembly::finish(int threads, const Events& events, const Til
   manifest_.num_features = features.count;
   manifest_.features_crs = features.crs;
   manifest_.features_sha256 = features.sha256;
-  source_index_ = order_sources(manifest_.sources);
+  manifest_.sources = ordered(std::move(manifest_.sources), source_index_);
 
-  std::filesystem::create_directory(folder / tiles_folder_name);
   const std::vector<TileKey> keys = tiles_.keys();
-  std::vector<TileResult> results(keys.size());
+  std::atomic<std::size_t> done = 0;
+  parallel_for(keys.size(), threads, [&](std::size_t i) {
+    close_tile(keys[i], filter);
+    events.advance("writing tiles", double(++done) / double(keys.size()));
+  });
+
   std::vector<TileEntry> entries;
   manifest_.num_points = 0;
-  ordered_pipeline(
-      keys.size(), threads, std::size_t(threads) * 4, [&](std::size_t i) { results[i] = write_tile(keys[i], filter); },
-      [&](std::size_t i) {
-        TileResult& result = results[i];
-        if (result.entry.num_points != 0) {
-          const bool first = entries.empty();
-          manifest_.min = first ? result.min : Eigen::Vector3d(manifest_.min.cwiseMin(result.min));
-          manifest_.max = first ? result.max : Eigen::Vector3d(manifest_.max.cwiseMax(result.max));
-          manifest_.num_points += result.entry.num_points;
-          entries.push_back(std::move(result.entry));
-        }
-        events.advance("writing tiles", double(i + 1) / double(keys.size()));
-      });
+  for (auto& [key, tile] : closed_) {
+    const bool first = entries.empty();
+    manifest_.min = first ? tile.min : Eigen::Vector3d(manifest_.min.cwiseMin(tile.min));
+    manifest_.max = first ? tile.max : Eigen::Vector3d(manifest_.max.cwiseMax(tile.max));
+    manifest_.num_points += tile.entry.num_points;
+    entries.push_back(std::move(tile.entry));
+  }
 
   manifest_.num_tiles = entries.size();
   manifest_.tiles = write_tile_index(folder / tile_index_file_name, entries);

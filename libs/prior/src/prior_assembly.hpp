@@ -1,5 +1,7 @@
 #pragma once
 #include <functional>
+#include <map>
+#include <mutex>
 #include <span>
 
 #include <priormap/core/atomic_output.hpp>
@@ -25,6 +27,8 @@ class PriorAssembly {
   void add(const PointCloud& columns, std::span<const Eigen::Vector3d> positions);
   std::uint32_t add_feature(const Feature& feature);
   void set_sources(std::vector<PriorSource> sources);
+  /// As PriorWriter::close_tile.
+  void close_tile(TileKey key) { close_tile(key, {}); }
 
   /// May remove points of a tile. They come in no order, halo included, with the numbers of features and sources they were added
   /// with. Whether a point stays must depend on the set of points around it alone. Called from several threads.
@@ -32,7 +36,11 @@ class PriorAssembly {
   PriorManifest finish(int threads, const Events& events, const TileFilter& filter = {});
 
  private:
-  struct TileResult;
+  struct TileResult {
+    TileEntry entry;
+    Eigen::Vector3d min = Eigen::Vector3d::Zero(), max = Eigen::Vector3d::Zero();
+  };
+  void close_tile(TileKey key, const TileFilter& filter);
   TileResult write_tile(TileKey key, const TileFilter& filter);
   template <class Position>
   void add_each(const PointCloud& columns, const Position& position);
@@ -47,8 +55,10 @@ class PriorAssembly {
   std::int64_t halo_steps_;
   TileSpool tiles_;
   FeatureSpool features_;
-  std::vector<std::uint32_t> feature_index_;   ///< of the number that add_feature gave
+  std::vector<std::uint32_t> feature_index_;   ///< of the number that add_feature gave; known at the end
   std::vector<std::uint16_t> source_index_;    ///< of the position in the sources as they were given
+  std::mutex closed_mutex_;
+  std::map<TileKey, TileResult> closed_;
 };
 
 }  // namespace priormap

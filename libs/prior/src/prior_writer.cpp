@@ -14,6 +14,7 @@ PriorWriter::~PriorWriter() = default;
 
 void PriorWriter::add(const PointCloud& points) { impl_->assembly.add(points); }
 std::uint32_t PriorWriter::add_feature(const Feature& feature) { return impl_->assembly.add_feature(feature); }
+void PriorWriter::close_tile(TileKey key) { impl_->assembly.close_tile(key); }
 void PriorWriter::set_sources(std::vector<PriorSource> sources) { impl_->assembly.set_sources(std::move(sources)); }
 PriorManifest PriorWriter::finish(int threads, const Events& events) { return impl_->assembly.finish(threads, events); }
 

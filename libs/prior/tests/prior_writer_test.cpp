@@ -173,6 +173,41 @@ TEST(PriorWriter, HashesInManifestAndIndexAreThoseOfTheFiles) {
   }
 }
 
+TEST(PriorWriter, ClosingTilesEarlyChangesNothing) {
+  const TestFolder folder;
+  const PointCloud cloud = random_cloud(5000, 9, 300);
+  auto write = [&](const std::string& name, bool close) {
+    PriorWriter writer(folder / name, test_manifest({test_source("b"), test_source("a")}), Overwrite::refuse);
+    writer.add(cloud);
+    if (close)
+      for (const TileKey key : {TileKey{1, 0}, TileKey{0, 0}, TileKey{7, 7}}) writer.close_tile(key);
+    writer.finish(2);
+    return folder_content(folder / name);
+  };
+  EXPECT_EQ(write("closed", true), write("open", false));
+}
+
+TEST(PriorWriter, AClosedTileTakesNoMorePoints) {
+  const TestFolder folder;
+  PriorWriter writer(folder / "prior", test_manifest({test_source("a")}), Overwrite::refuse);
+  PointCloud cloud;
+  cloud.xyz = {{1, 1, 1}};
+  writer.add(cloud);
+  writer.close_tile({0, 0});
+  writer.add(cloud);
+  EXPECT_THROW(writer.finish(1), Error);
+}
+
+TEST(PriorWriter, ATileWithFeaturesStaysOpen) {
+  const TestFolder folder;
+  PriorWriter writer(folder / "prior", test_manifest({test_source("a")}), Overwrite::refuse);
+  PointCloud cloud;
+  cloud.xyz = {{1, 1, 1}};
+  cloud.feature = {writer.add_feature({.source = "a", .id = "house"})};
+  writer.add(cloud);
+  EXPECT_THROW(writer.close_tile({0, 0}), Error);
+}
+
 TEST(PriorWriter, WithoutFinishNothingIsLeft) {
   const TestFolder folder;
   {

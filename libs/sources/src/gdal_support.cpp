@@ -13,7 +13,9 @@ namespace priormap {
 namespace {
 
 /// GDAL would take 5 % of the machine's memory.
-constexpr std::int64_t gdal_cache_bytes = 128 << 20;
+constexpr std::int64_t gdal_cache_bytes = 64 << 20, most_gdal_cache_bytes = 512 << 20;
+
+bool user_sets_cache() { return CPLGetConfigOption("GDAL_CACHEMAX", nullptr) != nullptr; }
 
 }  // namespace
 
@@ -21,8 +23,13 @@ void register_gdal() {
   static std::once_flag once;
   std::call_once(once, [] {
     GDALAllRegister();
-    if (!CPLGetConfigOption("GDAL_CACHEMAX", nullptr)) GDALSetCacheMax64(gdal_cache_bytes);
+    if (!user_sets_cache()) GDALSetCacheMax64(gdal_cache_bytes);
   });
+}
+
+void hold_in_cache(std::int64_t bytes) {
+  bytes = std::min(bytes, most_gdal_cache_bytes);
+  if (bytes > GDALGetCacheMax64() && !user_sets_cache()) GDALSetCacheMax64(bytes);
 }
 
 QuietGdal::QuietGdal() {

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +12,9 @@ namespace priormap {
 
 /// All drivers, once; a block cache of bounded size.
 void register_gdal();
+
+/// Lets the block cache grow to this size, within bounds. The user's GDAL_CACHEMAX has the last word.
+void hold_in_cache(std::int64_t bytes);
 
 /// GDAL prints nothing in this thread while this lives.
 class QuietGdal {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <priormap/core/error.hpp>
-#include <priormap/geodesy/transformer.hpp>
+#include <priormap/geodesy/interpolated_transformer.hpp>
 
 #include "raster_area.hpp"
 #include "raster_file.hpp"
@@ -91,6 +91,7 @@ struct HeightRaster::Impl {
         source(source_crs(raster, override_crs)),
         target(target_crs),
         horizontal(naming_file(file, [&] { return Transformer(source.horizontal(), target.horizontal(), area_of(raster.facts(), source)); })),
+        back(horizontal, InterpolatedTransformer::Direction::inverse),
         cell_from_world(raster.world_from_cell().inverse()),
         cells(raster) {
     if (target.has_vertical()) spatial.emplace(naming_file(file, [&] { return Transformer(source, target, area_of(raster.facts(), source)); }));
@@ -101,12 +102,14 @@ struct HeightRaster::Impl {
         source(other.source),
         target(other.target),
         horizontal(other.horizontal),
+        back(other.back),
         spatial(other.spatial),
         cell_from_world(other.cell_from_world),
         cells(raster) {}
 
-  Eigen::Vector2d cell_at(double x, double y) const {
-    const Eigen::Vector3d p = horizontal.is_identity() ? Eigen::Vector3d(x, y, 0) : horizontal.inverse(Eigen::Vector3d(x, y, 0));
+  Eigen::Vector2d cell_at(double x, double y) {
+    Eigen::Vector3d p(x, y, 0);
+    back.apply(std::span(&p, 1));
     return cell_from_world * p.head<2>();
   }
 
@@ -123,6 +126,7 @@ struct HeightRaster::Impl {
   RasterFile raster;
   Crs source, target;
   Transformer horizontal;               ///< raster to target, without heights
+  InterpolatedTransformer back;         ///< target to raster, without heights
   std::optional<Transformer> spatial;   ///< with heights; none where they stay as they are
   Eigen::Affine2d cell_from_world;
   CellCache cells;

@@ -55,37 +55,32 @@ void PointGrid::resize(std::size_t new_width, std::size_t new_height) {
   z.resize(size());
 }
 
-PointCloud points_of_grid(const PointGrid& grid) {
-  PointCloud points;
-  if (grid.width < 3 || grid.height < 3) return points;
+void points_of_grid(const PointGrid& grid, const Bounds2& area, PointCloud& points) {
+  points.clear();
+  if (grid.width < 3 || grid.height < 3) return;
   const std::size_t inner_width = grid.width - 2, inner_height = grid.height - 2;
-  std::size_t count = 0, last = 0;
-  for (std::size_t row = 1; row <= inner_height; ++row) {
-    for (std::size_t i = row * grid.width + 1; i <= row * grid.width + inner_width; ++i) {
-      if (std::isnan(grid.z[i])) continue;
-      ++count;
-      last = i;
-    }
-  }
-  if (count == 0) return points;
-
-  points.origin = Eigen::Vector3d(grid.x[last], grid.y[last], grid.z[last]).array().round();
-  const Eigen::Vector3d origin = points.origin * 1000;
   const NormalRule rule(grid);
-  points.xyz.resize(count);
-  points.normal.resize(count);
-  std::size_t k = 0;
+  const Bounds2 inside{thousandths(area.min_x), thousandths(area.min_y), thousandths(area.max_x), thousandths(area.max_y)};
+  points.xyz.resize(inner_width * inner_height);
+  points.normal.resize(inner_width * inner_height);
+  Eigen::Vector3d origin;
+  std::size_t count = 0;
   for (std::size_t col = 1; col <= inner_width; ++col) {
     for (std::size_t row = inner_height; row > 0; --row) {
       const std::size_t i = row * grid.width + col;
-      if (std::isnan(grid.z[i])) continue;
-      points.xyz[k] = {static_cast<float>((thousandths(grid.x[i]) - origin.x()) * 0.001), static_cast<float>((thousandths(grid.y[i]) - origin.y()) * 0.001),
-                       static_cast<float>((thousandths(grid.z[i]) - origin.z()) * 0.001)};
-      points.normal[k] = rule.at(&grid.z[i], grid.width);
-      ++k;
+      const Eigen::Vector3d p(thousandths(grid.x[i]), thousandths(grid.y[i]), thousandths(grid.z[i]));
+      if (std::isnan(grid.z[i]) || !inside.contains(p.x(), p.y())) continue;
+      if (count == 0) {
+        points.origin = (p / 1000).array().round();
+        origin = points.origin * 1000;
+      }
+      points.xyz[count] = ((p - origin) * 0.001).cast<float>();
+      points.normal[count] = rule.at(&grid.z[i], grid.width);
+      ++count;
     }
   }
-  return points;
+  points.xyz.resize(count);
+  points.normal.resize(count);
 }
 
 }  // namespace priormap

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include <priormap/geodesy/tile_grid.hpp>
 #include <priormap/pointcloud/point_cloud.hpp>
 
 namespace priormap {
@@ -20,8 +21,8 @@ struct PointGrid {
   std::size_t size() const { return width * height; }
 };
 
-/// The inner points with their normals, column by column from the west and the south of a north-up grid: the order in which tiles are
-/// sorted. Positions are rounded to 0.001.
-PointCloud points_of_grid(const PointGrid& grid);
+/// Replaces `points` by the inner points inside of `area`, with their normals, column by column from the west and the south of a north-up
+/// grid: the order in which tiles are sorted. Positions are rounded to 0.001 first.
+void points_of_grid(const PointGrid& grid, const Bounds2& area, PointCloud& points);
 
 }  // namespace priormap

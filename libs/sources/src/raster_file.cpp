@@ -10,6 +10,7 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <vector>
 
 #include <priormap/core/error.hpp>
@@ -73,66 +74,79 @@ bool is_no_data(double value, double no_data, bool is_float32) {
 
 }  // namespace
 
-RasterFile::RasterFile(const std::filesystem::path& file) : file_(file) {
+/// GDAL's handles serve one thread at a time.
+struct RasterFile::Open {
+  std::shared_ptr<GDALDataset> dataset;
+  GDALRasterBand* band = nullptr;
+  bool has_mask = false;
+  std::int64_t bytes_a_row = 0;   ///< of the whole raster, decoded
+  int block_height = 1;
+  std::mutex mutex;
+
+  void read(const std::filesystem::path& file, const CellWindow& window, std::span<double> heights) {
+    const std::lock_guard lock(mutex);
+    hold_in_cache(bytes_a_row * (window.height + 2 * block_height));
+    if (!read_band(*band, window, heights.data(), GDT_Float64)) throw FormatError(file, "has cells that cannot be read: " + QuietGdal::message());
+    if (!has_mask) return;
+    std::vector<std::uint8_t> mask(heights.size());
+    if (!read_band(*band->GetMaskBand(), window, mask.data(), GDT_Byte)) throw FormatError(file, "has a mask that cannot be read: " + QuietGdal::message());
+    for (std::size_t i = 0; i < heights.size(); ++i)
+      if (mask[i] == 0) heights[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+
+  static bool read_band(GDALRasterBand& from, const CellWindow& w, void* target, GDALDataType type) {
+    return from.RasterIO(GF_Read, w.col, w.row, w.width, w.height, target, w.width, w.height, type, 0, 0, nullptr) == CE_None;
+  }
+};
+
+RasterFile::RasterFile(const std::filesystem::path& file) : file_(file), open_(std::make_shared<Open>()) {
   register_gdal();
   const QuietGdal quiet;
-  dataset_ = open_raster(file);
-  if (dataset_->GetRasterCount() < 1) throw FormatError(file, "holds no raster band; name one of its subdatasets (see gdalinfo)");
-  band_ = dataset_->GetRasterBand(1);
-  world_from_cell_ = read_transform(*dataset_, file);
+  open_->dataset = open_raster(file);
+  GDALDataset& dataset = *open_->dataset;
+  if (dataset.GetRasterCount() < 1) throw FormatError(file, "holds no raster band; name one of its subdatasets (see gdalinfo)");
+  GDALRasterBand& band = *(open_->band = dataset.GetRasterBand(1));
+  world_from_cell_ = read_transform(dataset, file);
 
-  facts_.width = dataset_->GetRasterXSize();
-  facts_.height = dataset_->GetRasterYSize();
+  facts_.width = dataset.GetRasterXSize();
+  facts_.height = dataset.GetRasterYSize();
   facts_.bounds = bounds_of(world_from_cell_, facts_.width, facts_.height);
   facts_.cell_x = world_from_cell_.linear().col(0).norm();
   facts_.cell_y = world_from_cell_.linear().col(1).norm();
   try {
-    facts_.crs = crs_of(dataset_->GetSpatialRef());
+    facts_.crs = crs_of(dataset.GetSpatialRef());
   } catch (const CrsError& error) {
     throw CrsError(file.string() + ": " + error.what());
   }
-  band_->GetBlockSize(&natural_block_.x(), &natural_block_.y());
+  int block_width = 0;
+  band.GetBlockSize(&block_width, &open_->block_height);
+  open_->bytes_a_row = std::int64_t(facts_.width) * GDALGetDataTypeSizeBytes(band.GetRasterDataType());
+  open_->has_mask = (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
 
   int found = 0;
-  const double no_data = band_->GetNoDataValue(&found);
+  const double no_data = band.GetNoDataValue(&found);
   if (found) no_data_ = no_data;
-  is_float32_ = band_->GetRasterDataType() == GDT_Float32;
-  has_mask_ = (band_->GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
-  scale_ = band_->GetScale();
-  offset_ = band_->GetOffset();
+  is_float32_ = band.GetRasterDataType() == GDT_Float32;
+  scale_ = band.GetScale();
+  offset_ = band.GetOffset();
   if (!facts_.crs || !facts_.crs->has_vertical()) {
-    const double unit_m = band_unit_m(band_->GetUnitType());
+    const double unit_m = band_unit_m(band.GetUnitType());
     scale_ *= unit_m;
     offset_ *= unit_m;
   }
 }
 
-RasterFile::~RasterFile() = default;
-RasterFile::RasterFile(RasterFile&&) noexcept = default;
-
 void RasterFile::read(const CellWindow& window, std::span<double> heights) const {
   const QuietGdal quiet;
-  if (band_->RasterIO(GF_Read, window.col, window.row, window.width, window.height, heights.data(), window.width, window.height, GDT_Float64, 0, 0,
-                      nullptr) != CE_None)
-    throw FormatError(file_, "has cells that cannot be read: " + QuietGdal::message());
+  open_->read(file_, window, heights);
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (no_data_)
     for (double& z : heights)
       if (is_no_data(z, *no_data_, is_float32_)) z = none;
-  if (has_mask_) drop_masked(window, heights);
   for (double& z : heights) {
     z = z * scale_ + offset_;
     if (!(std::abs(z) < largest_height)) z = none;
   }
-}
-
-void RasterFile::drop_masked(const CellWindow& window, std::span<double> heights) const {
-  std::vector<std::uint8_t> mask(heights.size());
-  if (band_->GetMaskBand()->RasterIO(GF_Read, window.col, window.row, window.width, window.height, mask.data(), window.width, window.height,
-                                     GDT_Byte, 0, 0, nullptr) != CE_None)
-    throw FormatError(file_, "has a mask that cannot be read: " + QuietGdal::message());
-  for (std::size_t i = 0; i < heights.size(); ++i)
-    if (mask[i] == 0) heights[i] = std::numeric_limits<double>::quiet_NaN();
 }
 
 RasterFacts read_raster_facts(const std::filesystem::path& file) { return RasterFile(file).facts(); }

@@ -20,26 +20,15 @@ namespace {
 
 /// A cloud reaches no farther than this from its origin, so that float32 keeps the millimetre lattice.
 constexpr double cloud_extent = 2048;
-/// Cells of one reading of the file, and of one cloud.
-constexpr int block_cells = 1 << 18, cloud_edge = 128;
-
-bool overlap(const Bounds2& a, const Bounds2& b) { return a.min_x < b.max_x && b.min_x < a.max_x && a.min_y < b.max_y && b.min_y < a.max_y; }
-
-/// Whole strips or tiles of the file, about `block_cells` at once.
-Eigen::Vector2i choose_block(const RasterFile& raster) {
-  const Eigen::Vector2i natural = raster.natural_block();
-  const int width = raster.facts().width, height = raster.facts().height;
-  const auto multiple = [](int unit, int wanted) { return std::max(1, wanted / unit) * unit; };
-  if (natural.x() >= width) return {width, std::min(height, multiple(std::min(natural.y(), height), std::clamp(block_cells / width, 16, 512)))};
-  return {std::min(width, multiple(natural.x(), 512)), std::min(height, multiple(natural.y(), 512))};
-}
+/// Cells along the edge of one cloud; and of a patch with normals of its own orientation, in another CRS.
+constexpr int cloud_edge = 512, patch_edge = 128;
 
 /// Transforms positions with a height in place; where that fails the height is lost.
-void transform_known(const InterpolatedTransformer& transformer, PointGrid& grid, std::vector<Eigen::Vector3d>& buffer) {
+void transform_known(InterpolatedTransformer& transformer, PointGrid& grid, std::vector<Eigen::Vector3d>& buffer) {
   buffer.clear();
   for (std::size_t i = 0; i < grid.size(); ++i)
     if (!std::isnan(grid.z[i])) buffer.emplace_back(grid.x[i], grid.y[i], grid.z[i]);
-  transformer.forward(buffer);
+  transformer.apply(buffer);
   auto moved = buffer.begin();
   for (std::size_t i = 0; i < grid.size(); ++i) {
     if (std::isnan(grid.z[i])) continue;
@@ -51,60 +40,108 @@ void transform_known(const InterpolatedTransformer& transformer, PointGrid& grid
   }
 }
 
+/// Around the images of those places of an area that have one, with one step between places more on each side; empty where none has.
+Eigen::AlignedBox2d known_image(const Bounds2& area, InterpolatedTransformer& transformer) {
+  constexpr int steps = 32;
+  std::vector<Eigen::Vector3d> places;
+  for (int j = 0; j <= steps; ++j)
+    for (int i = 0; i <= steps; ++i)
+      places.emplace_back(area.min_x + (area.max_x - area.min_x) * i / steps, area.min_y + (area.max_y - area.min_y) * j / steps, 0);
+  transformer.apply(places);
+  Eigen::AlignedBox2d box;
+  double longest_step = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!places[i].allFinite()) continue;
+    box.extend(places[i].head<2>());
+    if (i % (steps + 1) > 0 && places[i - 1].allFinite()) longest_step = std::max(longest_step, (places[i] - places[i - 1]).head<2>().norm());
+    if (i > steps && places[i - steps - 1].allFinite()) longest_step = std::max(longest_step, (places[i] - places[i - steps - 1]).head<2>().norm());
+  }
+  if (!box.isEmpty()) box = {box.min().array() - longest_step, box.max().array() + longest_step};
+  return box;
+}
+
+/// Where the whole raster lies in the target CRS; nothing where it reaches so far beyond its domain that its image says nothing.
+std::optional<Bounds2> target_bounds(const RasterFacts& facts, double target_cell_size, InterpolatedTransformer& transformer) {
+  if (const auto image = image_bounds(facts.bounds, [&](std::span<Eigen::Vector3d> points) { transformer.apply(points); })) return image->outer;
+  const Eigen::AlignedBox2d known = known_image(facts.bounds, transformer);
+  constexpr double most = 10;
+  if (known.isEmpty() || known.volume() > most * facts.width * facts.height * target_cell_size * target_cell_size) return std::nullopt;
+  return Bounds2{known.min().x(), known.min().y(), known.max().x(), known.max().y()};
+}
+
 /// The raster's own cell centres.
 class CellSampling {
  public:
-  CellSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<Bounds2>& within)
-      : raster_(file), transformer_(Transformer(source, target, area_of(raster_.facts(), source)), raster_.facts().bounds), block_(choose_block(raster_)) {
-    cell_size_ = target_cell_size(raster_, transformer_.exact());
-    const double longer = cell_size_ * std::sqrt(std::max(raster_.facts().cell_x / raster_.facts().cell_y, raster_.facts().cell_y / raster_.facts().cell_x));
-    cloud_edge_ = static_cast<int>(std::clamp(cloud_extent / longer, 1.0, static_cast<double>(cloud_edge)));
-    plan(within ? needed_area(*within) : std::nullopt);
-  }
+  CellSampling(const std::filesystem::path& file, const Crs& source, const Crs& target)
+      : CellSampling(RasterFile(file), source, target) {}
 
-  std::size_t num_blocks() const { return blocks_.size(); }
+  const std::optional<Bounds2>& bounds() const { return bounds_; }
   const CoordinateOperation& operation() const { return transformer_.exact().operation(); }
   double cell_size() const { return cell_size_; }
 
-  void read_block(std::size_t block, const std::function<void(PointCloud&)>& visit) {
-    const CellWindow inner = blocks_[block];
-    const CellWindow outer = grown(inner);
-    heights_.resize(static_cast<std::size_t>(outer.width) * static_cast<std::size_t>(outer.height));
-    raster_.read(outer, heights_);
-    for (int row = inner.row; row < inner.row + inner.height; row += cloud_edge_) {
-      for (int col = inner.col; col < inner.col + inner.width; col += cloud_edge_) {
-        fill_grid({col, row, std::min(cloud_edge_, inner.col + inner.width - col), std::min(cloud_edge_, inner.row + inner.height - row)}, outer);
-        if (!transformer_.exact().is_identity()) transform_grid();
-        PointCloud points = points_of_grid(grid_);
-        if (!points.empty()) visit(points);
-      }
-    }
+  void read(const Bounds2& area, const std::function<void(PointCloud&)>& visit) {
+    const CellWindow window = window_over(area);
+    if (window.width <= 0 || window.height <= 0) return;
+    held_ = grown(window);
+    heights_.resize(static_cast<std::size_t>(held_.width) * static_cast<std::size_t>(held_.height));
+    raster_.read(held_, heights_);
+    for_each_patch(window, [&](const CellWindow& patch, const CellWindow& part) {
+      fill_grid(part);
+      if (!is_identity()) transform_grid(patch);
+      points_of_grid(grid_, area, points_);
+      if (!points_.empty()) visit(points_);
+    });
   }
 
  private:
-  /// Where cells of `within` lie in the raster's CRS.
-  std::optional<Bounds2> needed_area(const Bounds2& within) const {
-    const Transformer& exact = transformer_.exact();
-    if (exact.is_identity()) return within;
-    const auto image = image_bounds(within, Transformer(exact.target().horizontal(), exact.source().horizontal()));
-    return image ? std::optional(image->outer) : std::nullopt;
+  CellSampling(RasterFile raster, const Crs& source, const Crs& target)
+      : raster_(std::move(raster)),
+        transformer_(Transformer(source, target, area_of(raster_.facts(), source))),
+        back_(transformer_.exact(), InterpolatedTransformer::Direction::inverse) {
+    const RasterFacts& facts = raster_.facts();
+    cell_size_ = target_cell_size(raster_, transformer_.exact());
+    const double longer = cell_size_ * std::sqrt(std::max(facts.cell_x / facts.cell_y, facts.cell_y / facts.cell_x));
+    patch_edge_ = static_cast<int>(std::clamp(cloud_extent / longer, 1.0, static_cast<double>(is_identity() ? cloud_edge : patch_edge)));
+    bounds_ = target_bounds(facts, cell_size_, transformer_);
   }
 
-  void plan(const std::optional<Bounds2>& needed) {
-    for (int row = 0; row < raster_.facts().height; row += block_.y()) {
-      for (int col = 0; col < raster_.facts().width; col += block_.x()) {
-        const CellWindow window{col, row, std::min(block_.x(), raster_.facts().width - col), std::min(block_.y(), raster_.facts().height - row)};
-        if (!needed || overlap(world_bounds(window), *needed)) blocks_.push_back(window);
+  bool is_identity() const { return transformer_.exact().is_identity(); }
+
+  /// All cells whose centres may come to lie inside of the area.
+  CellWindow window_over(const Bounds2& area) {
+    Bounds2 b = area;
+    if (!is_identity()) {
+      if (const auto image = image_bounds(area, [&](std::span<Eigen::Vector3d> points) { back_.apply(points); })) {
+        b = image->outer;
+      } else {
+        const Eigen::AlignedBox2d known = known_image(area, back_);
+        if (known.isEmpty()) return {};
+        b = {known.min().x(), known.min().y(), known.max().x(), known.max().y()};
       }
     }
+    const Eigen::Affine2d cell_from_world = raster_.world_from_cell().inverse();
+    Eigen::AlignedBox2d cells;
+    for (const Eigen::Vector2d& corner : {Eigen::Vector2d(b.min_x, b.min_y), Eigen::Vector2d(b.max_x, b.min_y), Eigen::Vector2d(b.min_x, b.max_y), Eigen::Vector2d(b.max_x, b.max_y)})
+      cells.extend(cell_from_world * corner);
+    // Interpolation and rounding may move a centre across the edge of the area.
+    constexpr double hair = 0.25;
+    const auto first = [&](double v, int size) { return static_cast<int>(std::clamp(std::ceil(v - 0.5 - hair), 0.0, static_cast<double>(size))); };
+    const auto last = [&](double v, int size) { return static_cast<int>(std::clamp(std::floor(v - 0.5 + hair) + 1, 0.0, static_cast<double>(size))); };
+    const int col = first(cells.min().x(), raster_.facts().width), row = first(cells.min().y(), raster_.facts().height);
+    return {col, row, last(cells.max().x(), raster_.facts().width) - col, last(cells.max().y(), raster_.facts().height) - row};
   }
 
-  Bounds2 world_bounds(const CellWindow& w) const {
-    Eigen::AlignedBox2d box;
-    for (const Eigen::Vector2d& corner : {Eigen::Vector2d(w.col, w.row), Eigen::Vector2d(w.col + w.width, w.row), Eigen::Vector2d(w.col, w.row + w.height),
-                                          Eigen::Vector2d(w.col + w.width, w.row + w.height)})
-      box.extend(raster_.world_from_cell() * corner);
-    return {box.min().x(), box.min().y(), box.max().x(), box.max().y()};
+  /// Calls visit(patch, its part in the window). Patches of a raster in another CRS do not depend on the window: their normals share an orientation.
+  template <class Visit>
+  void for_each_patch(const CellWindow& w, const Visit& visit) const {
+    const auto first = [&](int v) { return is_identity() ? v : v / patch_edge_ * patch_edge_; };
+    for (int row = first(w.row); row < w.row + w.height; row += patch_edge_) {
+      for (int col = first(w.col); col < w.col + w.width; col += patch_edge_) {
+        const CellWindow patch{col, row, std::min(patch_edge_, raster_.facts().width - col), std::min(patch_edge_, raster_.facts().height - row)};
+        const int left = std::max(col, w.col), top = std::max(row, w.row);
+        visit(patch, CellWindow{left, top, std::min(col + patch.width, w.col + w.width) - left, std::min(row + patch.height, w.row + w.height) - top});
+      }
+    }
   }
 
   /// One cell more on each side, where the raster has one.
@@ -114,10 +151,9 @@ class CellSampling {
     return {left, top, right - left, bottom - top};
   }
 
-  /// Positions with a height go to the target CRS; the steps between cells become those at the middle of the grid.
-  void transform_grid() {
-    const std::size_t i = (grid_.height / 2) * grid_.width + grid_.width / 2;
-    const Eigen::Vector2d middle(grid_.x[i], grid_.y[i]);
+  /// Positions with a height go to the target CRS; the steps between cells become those at the middle of the patch.
+  void transform_grid(const CellWindow& patch) {
+    const Eigen::Vector2d middle = raster_.world_from_cell() * Eigen::Vector2d(patch.col + patch.width / 2 + 0.5, patch.row + patch.height / 2 + 0.5);
     std::array<Eigen::Vector3d, 3> p;
     p[0] << middle, 0;
     p[1] << middle + grid_.along, 0;
@@ -128,7 +164,7 @@ class CellSampling {
     transform_known(transformer_, grid_, buffer_);
   }
 
-  void fill_grid(const CellWindow& window, const CellWindow& held) {
+  void fill_grid(const CellWindow& window) {
     grid_.resize(static_cast<std::size_t>(window.width) + 2, static_cast<std::size_t>(window.height) + 2);
     const Eigen::Affine2d& world_from_cell = raster_.world_from_cell();
     grid_.along = world_from_cell.linear().col(0);
@@ -139,90 +175,84 @@ class CellSampling {
         const Eigen::Vector2d p = world_from_cell * Eigen::Vector2d(col + 0.5, row + 0.5);
         grid_.x[i] = p.x();
         grid_.y[i] = p.y();
-        const int held_col = col - held.col, held_row = row - held.row;
-        const bool inside = held_col >= 0 && held_col < held.width && held_row >= 0 && held_row < held.height;
-        grid_.z[i] = inside ? heights_[static_cast<std::size_t>(held_row) * static_cast<std::size_t>(held.width) + static_cast<std::size_t>(held_col)]
+        const int held_col = col - held_.col, held_row = row - held_.row;
+        const bool inside = held_col >= 0 && held_col < held_.width && held_row >= 0 && held_row < held_.height;
+        grid_.z[i] = inside ? heights_[static_cast<std::size_t>(held_row) * static_cast<std::size_t>(held_.width) + static_cast<std::size_t>(held_col)]
                             : std::numeric_limits<double>::quiet_NaN();
       }
     }
   }
 
   RasterFile raster_;
-  InterpolatedTransformer transformer_;
-  Eigen::Vector2i block_;
+  InterpolatedTransformer transformer_, back_;
   double cell_size_ = 0;
-  int cloud_edge_ = cloud_edge;
-  std::vector<CellWindow> blocks_;
+  int patch_edge_ = 0;
+  std::optional<Bounds2> bounds_;
+  CellWindow held_;   ///< whose heights are these:
   std::vector<double> heights_;
   PointGrid grid_;
   std::vector<Eigen::Vector3d> buffer_;
+  PointCloud points_;
 };
 
 /// Cells of a square lattice of the target CRS: node (i, j) at ((i + 0.5) s, (j + 0.5) s), so that none lies on the edge of a tile.
 class LatticeSampling {
  public:
-  LatticeSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, double spacing, const std::optional<Bounds2>& within)
+  LatticeSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, double spacing)
       : raster_(HeightRaster::open(file, source, target)), transformer_(source, target, area_of(read_raster_facts(file), source)), spacing_(spacing) {
-    block_nodes_ = static_cast<std::int64_t>(std::clamp(cloud_extent / spacing, 1.0, static_cast<double>(cloud_edge)));
-    const Transformer horizontal(source.horizontal(), target.horizontal());
-    const auto image = image_bounds(read_raster_facts(file).bounds, horizontal);
-    if (!image && !within)
-      throw CrsError(file.string() + ": reaches beyond the domain of " + target.name() + "; --bbox keeps a part of it, or --crs names another CRS");
-    if (image && within)
-      plan({std::max(image->outer.min_x, within->min_x), std::max(image->outer.min_y, within->min_y), std::min(image->outer.max_x, within->max_x),
-            std::min(image->outer.max_y, within->max_y)});
-    else
-      plan(image ? image->outer : *within);
+    cloud_nodes_ = static_cast<std::int64_t>(std::clamp(cloud_extent / spacing, 1.0, static_cast<double>(cloud_edge)));
+    InterpolatedTransformer horizontal(Transformer(source.horizontal(), target.horizontal()));
+    bounds_ = target_bounds(read_raster_facts(file), raster_.cell_size(), horizontal);
   }
 
-  std::size_t num_blocks() const { return blocks_.size(); }
+  const std::optional<Bounds2>& bounds() const { return bounds_; }
   const CoordinateOperation& operation() const { return transformer_.operation(); }
   double cell_size() const { return raster_.cell_size(); }
 
-  void read_block(std::size_t block, const std::function<void(PointCloud&)>& visit) {
-    const auto [first_i, first_j] = blocks_[block];
-    grid_.resize(static_cast<std::size_t>(block_nodes_) + 2, static_cast<std::size_t>(block_nodes_) + 2);
+  void read(const Bounds2& area, const std::function<void(PointCloud&)>& visit) {
+    const auto first = [&](double v) { return static_cast<std::int64_t>(std::floor(v / spacing_ - 0.5)); };
+    const auto last = [&](double v) { return static_cast<std::int64_t>(std::ceil(v / spacing_ - 0.5)) + 1; };
+    const Bounds2 known = bounds_.value_or(area);
+    const std::int64_t end_i = last(std::min(area.max_x, known.max_x)), end_j = last(std::min(area.max_y, known.max_y));
+    for (std::int64_t j = first(std::max(area.min_y, known.min_y)); j < end_j; j += cloud_nodes_) {
+      for (std::int64_t i = first(std::max(area.min_x, known.min_x)); i < end_i; i += cloud_nodes_) {
+        fill_grid(i, j, std::min(cloud_nodes_, end_i - i), std::min(cloud_nodes_, end_j - j));
+        points_of_grid(grid_, area, points_);
+        if (!points_.empty()) visit(points_);
+      }
+    }
+  }
+
+ private:
+  void fill_grid(std::int64_t first_i, std::int64_t first_j, std::int64_t width, std::int64_t height) {
+    grid_.resize(static_cast<std::size_t>(width) + 2, static_cast<std::size_t>(height) + 2);
     grid_.along = {spacing_, 0};
     grid_.down = {0, -spacing_};
     std::size_t k = 0;
-    for (std::int64_t j = first_j + block_nodes_; j >= first_j - 1; --j) {
-      for (std::int64_t i = first_i - 1; i <= first_i + block_nodes_; ++i, ++k) {
+    for (std::int64_t j = first_j + height; j >= first_j - 1; --j) {
+      for (std::int64_t i = first_i - 1; i <= first_i + width; ++i, ++k) {
         grid_.x[k] = (static_cast<double>(i) + 0.5) * spacing_;
         grid_.y[k] = (static_cast<double>(j) + 0.5) * spacing_;
         grid_.z[k] = raster_.at(grid_.x[k], grid_.y[k]).value_or(std::numeric_limits<double>::quiet_NaN());
       }
     }
-    PointCloud points = points_of_grid(grid_);
-    if (!points.empty()) visit(points);
-  }
-
- private:
-  struct Block {
-    std::int64_t i, j;   ///< of its lower left node
-  };
-
-  void plan(const Bounds2& area) {
-    if (area.empty()) return;
-    const double edge = static_cast<double>(block_nodes_) * spacing_;
-    for (auto j = static_cast<std::int64_t>(std::floor(area.min_y / edge)); static_cast<double>(j) * edge < area.max_y; ++j)
-      for (auto i = static_cast<std::int64_t>(std::floor(area.min_x / edge)); static_cast<double>(i) * edge < area.max_x; ++i)
-        blocks_.push_back({i * block_nodes_, j * block_nodes_});
   }
 
   HeightRaster raster_;
   Transformer transformer_;
   double spacing_;
-  std::int64_t block_nodes_ = cloud_edge;
-  std::vector<Block> blocks_;
+  std::int64_t cloud_nodes_ = cloud_edge;
+  std::optional<Bounds2> bounds_;
   PointGrid grid_;
+  PointCloud points_;
 };
 
 using Sampling = std::variant<CellSampling, LatticeSampling>;
 
-Sampling make_sampling(const std::filesystem::path& file, const Crs& source, const Crs& target, const RasterPointsOptions& options) {
+Sampling make_sampling(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<double>& spacing) {
   try {
-    if (options.spacing) return LatticeSampling(file, source, target, *options.spacing, options.within);
-    return CellSampling(file, source, target, options.within);
+    if (spacing) return LatticeSampling(file, source, target, *spacing);
+    return CellSampling(file, source, target);
   } catch (const CrsError& error) {
     const std::string message = error.what();
     throw CrsError(message.starts_with(file.string()) ? message : file.string() + ": " + message);
@@ -235,20 +265,20 @@ struct RasterPoints::Impl {
   Sampling sampling;
 };
 
-RasterPoints::RasterPoints(const std::filesystem::path& file, const Crs& source, const Crs& target, const RasterPointsOptions& options)
-    : impl_(new Impl{make_sampling(file, source, target, options)}) {}
+RasterPoints::RasterPoints(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<double>& spacing)
+    : impl_(new Impl{make_sampling(file, source, target, spacing)}) {}
 RasterPoints::RasterPoints(const RasterPoints& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
 RasterPoints& RasterPoints::operator=(const RasterPoints& other) { return *this = RasterPoints(other); }
 RasterPoints::RasterPoints(RasterPoints&&) noexcept = default;
 RasterPoints& RasterPoints::operator=(RasterPoints&&) noexcept = default;
 RasterPoints::~RasterPoints() = default;
 
-std::size_t RasterPoints::num_blocks() const {
-  return std::visit([](const auto& sampling) { return sampling.num_blocks(); }, impl_->sampling);
+void RasterPoints::read(const Bounds2& area, const std::function<void(PointCloud&)>& visit) {
+  std::visit([&](auto& sampling) { sampling.read(area, visit); }, impl_->sampling);
 }
 
-void RasterPoints::read_block(std::size_t block, const std::function<void(PointCloud&)>& visit) {
-  std::visit([&](auto& sampling) { sampling.read_block(block, visit); }, impl_->sampling);
+const std::optional<Bounds2>& RasterPoints::bounds() const {
+  return std::visit([](const auto& sampling) -> const std::optional<Bounds2>& { return sampling.bounds(); }, impl_->sampling);
 }
 
 double RasterPoints::cell_size() const {

@@ -37,18 +37,30 @@ class RasterPointsTest : public testing::Test {
     return folder_ / "dem.tif";
   }
 
-  /// Sorted by position.
-  std::vector<Point> read(const fs::path& file, const Crs& source, const Crs& target, const RasterPointsOptions& options = {}) {
-    RasterPoints raster(file, source, target, options);
+  /// All points, read in squares; sorted by position.
+  std::vector<Point> read(const fs::path& file, const Crs& source, const Crs& target, const std::optional<double>& spacing = std::nullopt, double square = 1e4) {
+    RasterPoints raster(file, source, target, spacing);
+    const Bounds2 bounds = raster.bounds().value();
     std::vector<Point> points;
-    for (std::size_t block = 0; block < raster.num_blocks(); ++block) {
-      raster.read_block(block, [&](PointCloud& cloud) {
-        cloud.check_columns();
-        for (std::size_t i = 0; i < cloud.size(); ++i) points.push_back({cloud.position(i), cloud.normal.at(i)});
-      });
-    }
-    const auto key = [](const Point& a) { return std::make_tuple(a.p.x(), a.p.y(), a.p.z()); };
+    for (double y = std::floor(bounds.min_y); y <= bounds.max_y; y += square)
+      for (double x = std::floor(bounds.min_x); x <= bounds.max_x; x += square) {
+        const std::vector<Point> part = read_area(raster, {x, y, x + square, y + square});
+        points.insert(points.end(), part.begin(), part.end());
+      }
+    const auto key = [](const Point& a) { return std::make_tuple(std::round(a.p.x() * 1000), std::round(a.p.y() * 1000), a.p.z()); };
     std::sort(points.begin(), points.end(), [&](const Point& a, const Point& b) { return key(a) < key(b); });
+    return points;
+  }
+
+  static std::vector<Point> read_area(RasterPoints& raster, const Bounds2& area) {
+    std::vector<Point> points;
+    raster.read(area, [&](PointCloud& cloud) {
+      cloud.check_columns();
+      for (std::size_t i = 0; i < cloud.size(); ++i) {
+        points.push_back({cloud.position(i), cloud.normal.at(i)});
+        EXPECT_TRUE(area.contains(points.back().p.x() + 1e-4, points.back().p.y() + 1e-4));
+      }
+    });
     return points;
   }
 
@@ -94,21 +106,29 @@ TEST_F(RasterPointsTest, results_do_not_depend_on_how_the_file_is_blocked) {
   }
 }
 
-TEST_F(RasterPointsTest, within_leaves_out_blocks_but_changes_no_point) {
-  RasterFixture fixture{.width = 2000, .height = 2000, .creation_options = {"TILED=YES"}, .value = [](double col, double row) { return 0.01 * col * row; }};
-  const fs::path file = write(fixture);
-  const Bounds2 box{500900, 4999000, 501000, 4999100};
-  const auto inside = [&](std::vector<Point> points) {
-    std::erase_if(points, [&](const Point& point) { return !box.contains(point.p.x(), point.p.y()); });
-    return points;
-  };
-  const auto all = read(file, utm, utm);
-  const auto part = read(file, utm, utm, {.spacing = std::nullopt, .within = box});
-  EXPECT_LT(part.size(), all.size() / 2);
-  const auto expected = inside(all), got = inside(part);
-  ASSERT_EQ(got.size(), 10000u);
-  ASSERT_EQ(expected.size(), got.size());
-  for (std::size_t i = 0; i < got.size(); ++i) EXPECT_EQ(got[i].normal, expected[i].normal);
+TEST_F(RasterPointsTest, points_do_not_depend_on_the_areas_in_which_they_are_read) {
+  const auto wave = [](double col, double row) { return 20 * std::sin(col * 0.03) + 10 * std::cos(row * 0.05); };
+  const fs::path file = write({.width = 300, .height = 250, .crs = "EPSG:25832", .value = wave});
+  for (const char* target : {"EPSG:25832", "EPSG:25833"}) {
+    for (const std::optional<double>& spacing : {std::optional<double>(), std::optional(0.9)}) {
+      const auto whole = read(file, Crs::parse("EPSG:25832"), Crs::parse(target), spacing), parts = read(file, Crs::parse("EPSG:25832"), Crs::parse(target), spacing, 77);
+      if (!spacing) { ASSERT_EQ(whole.size(), 75000u); }
+      ASSERT_EQ(parts.size(), whole.size());
+      for (std::size_t i = 0; i < whole.size(); ++i) {
+        ASSERT_LT((parts[i].p - whole[i].p).norm(), 4e-4);
+        ASSERT_EQ(parts[i].normal, whole[i].normal);
+      }
+    }
+  }
+}
+
+TEST_F(RasterPointsTest, areas_come_in_the_order_of_tiles) {
+  RasterPoints raster(write({.width = 600, .height = 500}), utm, utm);
+  raster.read({500100, 4999600, 500300, 4999800}, [&](PointCloud& cloud) {
+    EXPECT_EQ(cloud.size(), 40000u);
+    for (std::size_t i = 1; i < cloud.size(); ++i)
+      ASSERT_LT(std::make_pair(cloud.xyz[i - 1].x(), cloud.xyz[i - 1].y()), std::make_pair(cloud.xyz[i].x(), cloud.xyz[i].y()));
+  });
 }
 
 TEST_F(RasterPointsTest, in_another_crs_every_cell_is_where_proj_puts_it) {
@@ -129,7 +149,7 @@ TEST_F(RasterPointsTest, in_another_crs_every_cell_is_where_proj_puts_it) {
 
 TEST_F(RasterPointsTest, a_lattice_has_its_nodes_in_the_middle_of_global_cells) {
   const fs::path file = write({.width = 20, .height = 20, .transform = {500000.3, 2, 0, 5000000.7, 0, -2}, .value = [](double col, double row) { return 0.5 * (2 * col + 1) - (2 * row + 1); }});
-  const auto points = read(file, utm, utm, {.spacing = 0.5, .within = std::nullopt});
+  const auto points = read(file, utm, utm, 0.5);
   EXPECT_EQ(points.size(), 6400u);
   for (const Point& point : points) {
     EXPECT_NEAR(std::fmod(point.p.x(), 0.5), 0.25, 1e-9);

@@ -1,5 +1,7 @@
 #pragma once
+#include <functional>
 #include <optional>
+#include <span>
 
 #include <priormap/geodesy/tile_grid.hpp>
 #include <priormap/geodesy/transformer.hpp>
@@ -14,5 +16,7 @@ struct ImageBounds {
 
 /// Nothing where the rectangle leaves the domain of either CRS or goes around the Earth. `bounds` are in `transformer.source()`.
 std::optional<ImageBounds> image_bounds(const Bounds2& bounds, const Transformer& transformer);
+/// The same for any mapping, which takes points in place and makes them NaN where they have no image.
+std::optional<ImageBounds> image_bounds(const Bounds2& bounds, const std::function<void(std::span<Eigen::Vector3d>)>& transform);
 
 }  // namespace priormap

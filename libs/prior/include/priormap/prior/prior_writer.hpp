@@ -5,6 +5,7 @@
 
 #include <priormap/core/atomic_output.hpp>
 #include <priormap/core/events.hpp>
+#include <priormap/geodesy/tile_grid.hpp>
 #include <priormap/pointcloud/point_cloud.hpp>
 #include <priormap/prior/feature.hpp>
 #include <priormap/prior/prior_manifest.hpp>
@@ -35,6 +36,9 @@ class PriorWriter {
   /// Thread-safe. The returned number is the writer's own; `finish` renumbers features in order of (source, id) and leaves out
   /// those without a point. A feature given twice with the same (source, id) is one feature.
   std::uint32_t add_feature(const Feature& feature);
+  /// Writes a tile at once, whose points have all been added: keeps memory small and spares the way over the disk. Thread-safe.
+  /// @throws Error when it holds points of features, whose numbers are known at the end only, or more of its points come later; IoError.
+  void close_tile(TileKey key);
   /// Facts known only at the end, such as the counts of a source; the same sources in the same order.
   void set_sources(std::vector<PriorSource> sources);
   /// Writes tiles (in parallel), features, index, manifest and ATTRIBUTION.txt; renames into place. @return the manifest as written.

@@ -10,35 +10,33 @@
 
 namespace priormap {
 
-struct RasterPointsOptions {
-  /// Edge of a square lattice of the target CRS on whose cells' centres heights are interpolated; none: the raster's own cell centres.
-  std::optional<double> spacing;
-  /// Blocks wholly outside of this rectangle of the target CRS are left out; single points outside may still come.
-  std::optional<Bounds2> within;
-};
-
-/// The heights of a raster as points with normals, block by block, in memory that does not grow with the raster.
+/// The heights of a raster as points with normals, area by area, in memory that does not grow with the raster.
 ///
-/// Positions are rounded to 0.001 units of the target CRS. They depend on the raster alone: not on blocks, `within` or the
-/// order of calls. The normal of a cell comes from its four neighbours: the mean slope per axis, but where the two sides differ by more
+/// Positions are rounded to 0.001 units of the target CRS. They depend on the raster alone: not on areas or the order of calls. The
+/// normal of a cell comes from its four neighbours: the mean slope per axis, but where the two sides differ by more
 /// than 45 degrees (a roof's edge) the flatter side alone; zero where an axis has no neighbour with data.
 ///
-/// One object per thread; copies open the file once more.
+/// One object per thread; copies share the open file.
 class RasterPoints {
  public:
-  /// @param source  of the raster, with a vertical part where its heights are known
-  /// @param target  projected
+  /// @param source   of the raster, with a vertical part where its heights are known
+  /// @param target   projected
+  /// @param spacing  edge of a square lattice of the target CRS on whose cells' centres heights are interpolated; none: the raster's own
+  ///                 cell centres
   /// @throws IoError, FormatError, CrsError as HeightRaster
-  RasterPoints(const std::filesystem::path& file, const Crs& source, const Crs& target, const RasterPointsOptions& options);
+  RasterPoints(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<double>& spacing = std::nullopt);
   RasterPoints(const RasterPoints& other);
   RasterPoints& operator=(const RasterPoints& other);
   RasterPoints(RasterPoints&&) noexcept;
   RasterPoints& operator=(RasterPoints&&) noexcept;
   ~RasterPoints();
 
-  std::size_t num_blocks() const;
-  /// Calls visit(points) with the block's points: positions and normals, each cloud within a few km of its origin.
-  void read_block(std::size_t block, const std::function<void(PointCloud& points)>& visit);
+  /// Calls visit(points) with the points inside of `area` (half-open, in the target CRS, whole thousandths): positions and normals, each
+  /// cloud within a few km of its origin. Where the axes of raster and target are parallel and the area is at most 512 cells wide
+  /// and high, they come sorted by x, then y. Neighbouring areas are best read row by row.
+  void read(const Bounds2& area, const std::function<void(PointCloud& points)>& visit);
+  /// A rectangle of the target CRS with all points; nothing where the raster reaches beyond the domain of the CRS.
+  const std::optional<Bounds2>& bounds() const;
   const CoordinateOperation& operation() const;
   double cell_size() const;   ///< edge of a raster cell (geometric mean) in the unit of the target CRS, at the raster's centre
 
