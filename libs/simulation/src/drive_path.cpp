@@ -10,7 +10,7 @@
 #include <priormap/core/error.hpp>
 #include <priormap/simulation/random.hpp>
 
-#include "polyline.hpp"
+#include "steering.hpp"
 #include "stream.hpp"
 
 namespace priormap {
@@ -77,37 +77,14 @@ Eigen::Isometry3d pose_of_row(const std::vector<double>& row) {
   return pose;
 }
 
-/// Yaw along a line, without jumps of a full turn.
-std::vector<double> headings(const std::vector<Eigen::Vector2d>& line) {
-  std::vector<double> yaws(line.size());
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const Eigen::Vector2d run = line[std::min(i + 1, line.size() - 1)] - line[i > 0 ? i - 1 : 0];
-    const double yaw = run.norm() > 1e-9 ? std::atan2(run.y(), run.x()) : (i > 0 ? yaws[i - 1] : 0);
-    yaws[i] = i == 0 ? yaw : yaws[i - 1] + std::remainder(yaw - yaws[i - 1], 2 * std::numbers::pi);
-  }
-  return yaws;
-}
-
-template <class T>
-std::vector<T> moving_mean(const std::vector<T>& values, std::size_t half_width) {
-  std::vector<T> means(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    // The window shrinks at the ends, evenly on both sides, so that the ends stay in place.
-    const std::size_t reach = std::min({half_width, i, values.size() - 1 - i});
-    T sum = values[i - reach];
-    for (std::size_t k = i - reach + 1; k <= i + reach; ++k) sum += values[k];
-    means[i] = sum / static_cast<double>(2 * reach + 1);
-  }
-  return means;
-}
-
-/// Speed at each point of a line sampled every `step_m`: limited in bends, accelerating and braking gently.
-std::vector<double> speeds(const std::vector<double>& yaws, double step_m, double limit_mps) {
+/// Speed at each state of a car, `step_m` apart: limited in bends, nearly none where it changes gear, accelerating and braking gently.
+std::vector<double> speeds(const std::vector<CarState>& states, double step_m, double limit_mps) {
   constexpr double lateral_mps2 = 2.5, along_mps2 = 1.5, turn_rate_radps = 0.6, crawl_mps = 0.3;
-  std::vector<double> speed(yaws.size(), limit_mps);
-  for (std::size_t i = 1; i + 1 < yaws.size(); ++i) {
-    const double curvature = std::max(1e-6, std::abs(yaws[i + 1] - yaws[i - 1]) / (2 * step_m));
+  std::vector<double> speed(states.size(), limit_mps);
+  for (std::size_t i = 1; i + 1 < states.size(); ++i) {
+    const double curvature = std::max(1e-6, std::abs(states[i + 1].yaw - states[i - 1].yaw) / (2 * step_m));
     speed[i] = std::max(crawl_mps, std::min({limit_mps, std::sqrt(lateral_mps2 / curvature), turn_rate_radps / curvature}));
+    if (states[i].backward != states[i + 1].backward) speed[i] = crawl_mps;
   }
   const auto reachable = [&](double from) { return std::sqrt(from * from + 2 * along_mps2 * step_m); };
   for (std::size_t i = 1; i < speed.size(); ++i) speed[i] = std::min(speed[i], reachable(speed[i - 1]));
@@ -184,24 +161,19 @@ RecordedPoses read_recorded_poses(const std::filesystem::path& file, const std::
 std::vector<TrackPoint> drive_along(const std::vector<Eigen::Vector2d>& line, double lane_offset_m, const DriveSpeed& speed,
                                     std::size_t count) {
   constexpr double step_m = 0.25;
-  constexpr std::size_t rounding_steps = 20, yaw_steps = 6;   // windows of 10 m and of 3 m
-  const std::vector<Eigen::Vector2d> centre =
-      moving_mean(moving_mean(resampled(line, step_m), rounding_steps), rounding_steps);
-  const std::vector<double> yaws = moving_mean(headings(centre), yaw_steps);
-  std::vector<Eigen::Vector2d> lane(centre.size());
-  for (std::size_t i = 0; i < centre.size(); ++i)
-    lane[i] = centre[i] + lane_offset_m * Eigen::Vector2d(std::sin(yaws[i]), -std::cos(yaws[i]));
-  const std::vector<double> lane_speeds = speeds(yaws, step_m, speed.speed_mps);
+  const std::vector<CarState> states = steer_along(line, lane_offset_m, step_m);
+  const std::vector<double> car_speeds = speeds(states, step_m, speed.speed_mps);
 
   std::vector<TrackPoint> track;
-  double position = 0;   // index into the samples
+  double position = 0;   // index into the states
   const double period_s = 1 / speed.rate_hz;
   for (std::size_t k = 0; k < count; ++k) {
-    if (position > static_cast<double>(lane.size() - 2)) break;
+    if (position > static_cast<double>(states.size() - 2)) break;
     const auto i = static_cast<std::size_t>(position);
     const double u = position - static_cast<double>(i);
-    track.push_back({static_cast<double>(k) * period_s, (1 - u) * lane[i] + u * lane[i + 1], (1 - u) * yaws[i] + u * yaws[i + 1]});
-    position += lane_speeds[i] * period_s / step_m;
+    track.push_back({static_cast<double>(k) * period_s, (1 - u) * states[i].position + u * states[i + 1].position,
+                     (1 - u) * states[i].yaw + u * states[i + 1].yaw});
+    position += car_speeds[i] * period_s / step_m;
   }
   return track;
 }

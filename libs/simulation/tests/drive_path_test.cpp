@@ -84,6 +84,55 @@ TEST(DriveAlong, KeepsRightAndSlowsInBends) {
   EXPECT_NEAR(track.back().yaw, std::numbers::pi / 2, 1e-3);
 }
 
+/// Nothing a car cannot do: tight turns, sharp jolts, slipping sideways.
+void expect_car_like(const std::vector<TrackPoint>& track, double rate_hz) {
+  constexpr double turning_radius_m = 5;
+  for (std::size_t i = 1; i < track.size(); ++i) {
+    const Eigen::Vector2d step = track[i].position - track[i - 1].position;
+    const double turn = track[i].yaw - track[i - 1].yaw, yaw = 0.5 * (track[i].yaw + track[i - 1].yaw);
+    EXPECT_LT(std::abs(turn), 1.02 * step.norm() / turning_radius_m + 0.02) << "scan " << i;
+    EXPECT_LT(std::abs(turn) * rate_hz * step.norm() * rate_hz, 3) << "scan " << i << ": lateral acceleration";
+    const Eigen::Vector2d left(-std::sin(yaw), std::cos(yaw));
+    EXPECT_LT(std::abs(step.dot(left)), 0.03) << "scan " << i;
+  }
+}
+
+TEST(DriveAlong, TurnsBackLikeACarWhereAStreetEnds) {
+  const double half_width_m = 5;
+  const auto track = drive_along({{0, 0}, {60, 0}, {0, 0}}, 1.5, {8, 10}, 400);
+  expect_car_like(track, 10);
+  bool backward = false;
+  for (std::size_t i = 1; i < track.size(); ++i) {
+    const Eigen::Vector2d step = track[i].position - track[i - 1].position;
+    backward |= step.dot(Eigen::Vector2d(std::cos(track[i].yaw), std::sin(track[i].yaw))) < -0.01;
+    EXPECT_LT(std::abs(track[i].position.y()), half_width_m);
+    EXPECT_LT(track[i].position.x(), 60) << "the car stays on the street";
+  }
+  EXPECT_TRUE(backward) << "a street of 10 m has no room to turn in one go";
+  EXPECT_NEAR(track.back().yaw, std::numbers::pi, 0.01) << "to the left";
+  EXPECT_NEAR(track.back().position.y(), 1.5, 0.05) << "on the other lane";
+  EXPECT_LT(track.back().position.x(), 2);
+}
+
+TEST(DriveAlong, IsCarLikeAtAnyCorner) {
+  for (const double corner_deg : {30., 60., 90., 110., 119., 121., 140., 165., 179., -45., -90., -119., -125., -149., -151., -175.}) {
+    SCOPED_TRACE(corner_deg);
+    const double corner = corner_deg * std::numbers::pi / 180;
+    const Eigen::Vector2d junction(40, 0), end = junction + 40 * Eigen::Vector2d(std::cos(corner), std::sin(corner));
+    const auto track = drive_along({{0, 0}, junction, end}, 1.5, {8, 10}, 600);
+    expect_car_like(track, 10);
+    EXPECT_LT((track.back().position - end).norm(), 2.5);
+    EXPECT_NEAR(std::remainder(track.back().yaw - corner, 2 * std::numbers::pi), 0, 0.02);
+  }
+}
+
+/// Ends of streets too short to turn in, one after the other: the drive goes on.
+TEST(DriveAlong, GetsOutOfAnyStreetGraph) {
+  const auto track = drive_along({{0, 0}, {30, 0}, {33, 0}, {30, 0}, {30, 4}, {30, 0}, {0, 0}}, 1.5, {8, 10}, 2000);
+  expect_car_like(track, 10);
+  EXPECT_LT((track.back().position - Eigen::Vector2d(0, 0)).norm(), 3);
+}
+
 TEST(RecordedPoses, CameraAxesBecomeLidarAxes) {
   const auto file = std::filesystem::path(testing::TempDir()) / "camera_poses.txt";
   // 2 m forward (camera z), 1 m to the right (camera x), then turned right by 90 degrees about camera y (down).
