@@ -1,5 +1,6 @@
 #include <priormap/cli/tool_app.hpp>
 
+#include <malloc.h>
 #include <pthread.h>
 #include <signal.h>
 #include <unistd.h>
@@ -58,6 +59,13 @@ void clean_up_on_signals() {
     discard_pending_outputs();
     ::_exit(128 + signal);
   }).detach();
+}
+
+/// Buffers of a few MB come and go with each tile or scan. glibc would give their memory back each time and fetch it page by page again,
+/// which took a fifth of dsm2prior's time.
+void keep_freed_memory() {
+  mallopt(M_MMAP_THRESHOLD, 8 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
 }
 
 std::string type_name(const char* kind, const OptionField& field) {
@@ -311,6 +319,7 @@ int ToolApp::run(int argc, char** argv, const std::function<void(const ToolConte
   // A write beyond the file size limit is then an error like a full disk, not a kill that leaves temporary files.
   ::signal(SIGXFSZ, SIG_IGN);
   clean_up_on_signals();
+  keep_freed_memory();
   Console console(impl.name, impl.quiet, impl.log_json);
   try {
     ToolContext context;

@@ -1,6 +1,7 @@
 #include "record_columns.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace priormap {
 namespace {
@@ -9,7 +10,7 @@ constexpr float normal_steps = 32767;
 
 std::int16_t normal_step(float component) {
   const float steps = std::clamp(component, -1.0f, 1.0f) * normal_steps;
-  return std::int16_t(steps + (steps < 0 ? -0.5f : 0.5f));
+  return std::int16_t(steps + std::copysign(0.5f, steps));   // signs are random: no branch
 }
 
 std::uint16_t sigma_step(float sigma_m) {

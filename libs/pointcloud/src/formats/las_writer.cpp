@@ -33,11 +33,6 @@ ExtraColumns extra_columns(const PointCloud& points) {
           !std::all_of(points.intensity.begin(), points.intensity.end(), fits_las_intensity), !points.time_s.empty()};
 }
 
-ExtraColumns extra_columns(std::span<const LasPoint> points) {
-  const bool whole_intensities = std::all_of(points.begin(), points.end(), [](const LasPoint& p) { return fits_las_intensity(p.intensity); });
-  return {true, true, true, true, !whole_intensities, false};
-}
-
 std::vector<ExtraField> plan_extra_fields(const ExtraColumns& columns, std::size_t base_length) {
   std::vector<ExtraField> fields;
   std::size_t position = base_length;
@@ -246,46 +241,58 @@ void check(std::size_t num_points, const LasWriteOptions& options) {
     throw UsageError("LAS scale must be positive and the offset finite");
 }
 
-/// A file around its point records: `encode_records(fields, records)` writes them and returns their extent.
-template <class EncodeRecords>
-std::vector<std::byte> encode_file(std::size_t num_points, const ExtraColumns& columns, const LasWriteOptions& options,
-                                   const EncodeRecords& encode_records) {
-  check(num_points, options);
-  const auto fields = plan_extra_fields(columns, base_record_length(options.point_format));
-  const auto variable_records = plan_variable_records(options.wkt, fields);
-
+/// What comes before the point records, but for the header's fields that depend on them.
+struct FilePlan {
+  std::vector<ExtraField> fields;
   HeaderFacts facts{};
-  facts.num_points = num_points;
-  facts.num_variable_records = variable_records.size();
-  facts.record_length = fields.empty() ? base_record_length(options.point_format) : fields.back().position + size_of(fields.back().type);
-  facts.points_position = is_extended(options.point_format) ? header_size_1_4 : header_size_1_2;
-  for (const auto& record : variable_records) facts.points_position += vlr_header_size + record.content.size();
+  std::vector<std::byte> head;
+};
 
-  std::vector<std::byte> bytes(facts.points_position + facts.num_points * facts.record_length);
-  std::size_t position = is_extended(options.point_format) ? header_size_1_4 : header_size_1_2;
+FilePlan plan_file(std::size_t num_points, const ExtraColumns& columns, const LasWriteOptions& options) {
+  check(num_points, options);
+  FilePlan plan{plan_extra_fields(columns, base_record_length(options.point_format)), {}, {}};
+  const auto variable_records = plan_variable_records(options.wkt, plan.fields);
+  plan.facts.num_points = num_points;
+  plan.facts.num_variable_records = variable_records.size();
+  plan.facts.record_length = plan.fields.empty() ? base_record_length(options.point_format) : plan.fields.back().position + size_of(plan.fields.back().type);
+  plan.head.resize(is_extended(options.point_format) ? header_size_1_4 : header_size_1_2);
   for (const auto& record : variable_records) {
-    put_variable_record(&bytes[position], record);
-    position += vlr_header_size + record.content.size();
+    const std::size_t position = plan.head.size();
+    plan.head.resize(position + vlr_header_size + record.content.size());
+    put_variable_record(&plan.head[position], record);
   }
-  facts.extent = encode_records(fields, RecordSink{bytes.data() + facts.points_position, facts.record_length, 0, facts.num_points});
-  put_header(bytes.data(), options, facts);
-  return bytes;
+  plan.facts.points_position = plan.head.size();
+  return plan;
 }
 
-/// All columns of a point in one go; the four extra columns follow each other in every plan.
-Extent encode_lattice_points(std::span<const LasPoint> points, const LasWriteOptions& options, const std::vector<ExtraField>& fields,
-                             const RecordSink& records) {
-  const bool extended = is_extended(options.point_format);
+struct LatticeSurvey {
+  Eigen::AlignedBox3i extent;
+  bool whole_intensities = true;
+};
+
+LatticeSurvey survey(std::span<const LasPoint> points) {
+  constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
+  std::int32_t low[3] = {most, most, most}, high[3] = {-most, -most, -most};
+  bool whole = true;
+  for (const LasPoint& p : points) {
+    const std::int32_t position[3] = {p.x, p.y, p.z};
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], position[axis]);
+      high[axis] = std::max(high[axis], position[axis]);
+    }
+    whole = whole && (p.intensity == 0 || fits_las_intensity(p.intensity));
+  }
+  return {{Eigen::Vector3i(low), Eigen::Vector3i(high)}, whole};
+}
+
+/// All columns of a point in one go; the four extra columns follow each other in every plan. What is not set stays zero.
+void encode_lattice_points(std::span<const LasPoint> points, bool extended, const FilePlan& plan, std::byte* records) {
   const std::byte only_return{static_cast<unsigned char>(extended ? 0x11 : 0x09)};
-  const std::size_t class_position = extended ? 16 : 15, extra_position = fields.front().position;
-  const ExtraField* intensity = find(fields, intensity_name);
-  Eigen::Array3i low = Eigen::Array3i::Constant(std::numeric_limits<int>::max()), high = -low;
+  const std::size_t class_position = extended ? 16 : 15, extra_position = plan.fields.front().position, length = plan.facts.record_length;
+  const ExtraField* intensity = find(plan.fields, intensity_name);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const LasPoint& p = points[i];
-    const Eigen::Array3i position(p.x, p.y, p.z);
-    low = low.min(position);
-    high = high.max(position);
-    std::byte* at = records.at(i, 0);
+    std::byte* at = records + i * length;
     store(at, p.x);
     store(at + 4, p.y);
     store(at + 8, p.z);
@@ -299,29 +306,38 @@ Extent encode_lattice_points(std::span<const LasPoint> points, const LasWriteOpt
     store(at + extra_position + 10, p.feature);
     if (intensity) store(at + intensity->position, p.intensity);
   }
-  return {low.cast<double>(), high.cast<double>()};
 }
 
 }  // namespace
 
 std::vector<std::byte> encode_las(const PointCloud& points, const LasWriteOptions& options) {
   points.check_columns();
-  return encode_file(points.size(), extra_columns(points), options, [&](const auto& fields, const RecordSink& records) {
-    Extent extent;
-    for (std::size_t begin = 0; begin < records.end; begin += block_points) {
-      const RecordSink block{records.records, records.length, begin, std::min(begin + block_points, records.end)};
-      encode_positions(points, options, block, extent);
-      encode_standard_fields(points, options.point_format, block);
-      encode_columns(points, fields, block);
-    }
-    return extent;
-  });
+  FilePlan plan = plan_file(points.size(), extra_columns(points), options);
+  std::vector<std::byte> bytes = std::move(plan.head);
+  bytes.resize(plan.facts.points_position + points.size() * plan.facts.record_length);
+  for (std::size_t begin = 0; begin < points.size(); begin += block_points) {
+    const RecordSink block{bytes.data() + plan.facts.points_position, plan.facts.record_length, begin, std::min(begin + block_points, points.size())};
+    encode_positions(points, options, block, plan.facts.extent);
+    encode_standard_fields(points, options.point_format, block);
+    encode_columns(points, plan.fields, block);
+  }
+  put_header(bytes.data(), options, plan.facts);
+  return bytes;
 }
 
-std::vector<std::byte> encode_las(std::span<const LasPoint> points, const LasWriteOptions& options) {
-  return encode_file(points.size(), extra_columns(points), options, [&](const auto& fields, const RecordSink& records) {
-    return encode_lattice_points(points, options, fields, records);
-  });
+Eigen::AlignedBox3i encode_las(std::span<const LasPoint> points, const LasWriteOptions& options, const std::function<void(std::span<const std::byte>)>& write) {
+  const LatticeSurvey facts = survey(points);
+  FilePlan plan = plan_file(points.size(), {true, true, true, true, !facts.whole_intensities, false}, options);
+  plan.facts.extent = {facts.extent.min().array().cast<double>(), facts.extent.max().array().cast<double>()};
+  put_header(plan.head.data(), options, plan.facts);
+  write(plan.head);
+  std::vector<std::byte> records(std::min(points.size(), 2 * block_points) * plan.facts.record_length);
+  for (; !points.empty(); points = points.subspan(std::min(points.size(), 2 * block_points))) {
+    const auto block = points.first(std::min(points.size(), 2 * block_points));
+    encode_lattice_points(block, is_extended(options.point_format), plan, records.data());
+    write(std::span(records).first(block.size() * plan.facts.record_length));
+  }
+  return facts.extent;
 }
 
 void write_las(const std::filesystem::path& file, const PointCloud& points, const LasWriteOptions& options) {

@@ -1,8 +1,9 @@
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -76,8 +77,9 @@ struct LasPoint {
 };
 static_assert(sizeof(LasPoint) == 32);
 
-/// The same for points that lie on the file's lattice already; five times as fast.
-std::vector<std::byte> encode_las(std::span<const LasPoint> points, const LasWriteOptions& options);
+/// The same for points that lie on the file's lattice already: much faster, and handed on from start to end in blocks of some 90 kB.
+/// @return the positions' extent, in multiples of the scale
+Eigen::AlignedBox3i encode_las(std::span<const LasPoint> points, const LasWriteOptions& options, const std::function<void(std::span<const std::byte>)>& write);
 
 /// Plain write of `encode_las`: callers put it inside an AtomicFile or AtomicDirectory. @throws IoError, on a full disk as well.
 void write_las(const std::filesystem::path& file, const PointCloud& points, const LasWriteOptions& options);
