@@ -15,34 +15,37 @@ out=out/real_data
 command -v mapper >/dev/null || { echo "02_real_data.sh: build first: examples/quickstart.sh" >&2; exit 1; }
 mkdir -p "$out"
 
-# Runs a command; its wall time goes to $seconds, its peak memory (VmHWM less clean file-mapped pages, as everywhere) to $peak_mb.
+# Runs a command; $seconds: its wall time, $cpu_seconds: of all cores, $peak_mb: VmHWM less clean file-mapped pages, as everywhere.
 measure() {
-  local start=$EPOCHREALTIME pid peak_kib=0
+  local start=$EPOCHREALTIME pid figures="0 0"
   "$@" &
   pid=$!
-  while [ -e "/proc/$pid/status" ]; do
-    peak_kib=$(awk -v last="$peak_kib" '$1 == "VmHWM:" { kib += $2 } $1 == "RssFile:" { kib -= $2 } END { print (kib > last ? kib : last) }' \
-      "/proc/$pid/status" 2>/dev/null || echo "$peak_kib")
+  while [ -e "/proc/$pid" ]; do
+    figures=$(awk -v last="$figures" '
+      FILENAME ~ /stat$/ { cpu = ($14 + $15) / 100 }
+      $1 == "VmHWM:" { kib += $2 }
+      $1 == "RssFile:" { kib -= $2 }
+      END { split(last, was); print (cpu > was[1] ? cpu : was[1]), (kib > was[2] ? kib : was[2]) }' "/proc/$pid/stat" "/proc/$pid/status" 2>/dev/null || echo "$figures")
     sleep 0.05
   done
   wait "$pid"
-  seconds=$(awk -v from="$start" -v to="$EPOCHREALTIME" 'BEGIN { printf "%.1f", to - from }')
-  peak_mb=$(awk -v kib="$peak_kib" 'BEGIN { printf "%.0f", kib * 1024 / 1e6 }')
+  read -r seconds cpu_seconds peak_mb <<<"$(awk -v from="$start" -v to="$EPOCHREALTIME" -v figures="$figures" '
+    BEGIN { split(figures, f); printf "%.1f %.1f %.0f", to - from, f[1], f[2] * 1024 / 1e6 }')"
 }
 
 # NAME TOOL ARGUMENTS...: builds a prior, prints its row of the table, draws it.
 place() {
-  local name=$1 seconds peak_mb
+  local name=$1 seconds cpu_seconds peak_mb
   shift
   measure "$@" --quiet -o "$out/priors/$name" >"$out/priors/$name.log"
-  awk -v name="$name" -v tool="$1" -v seconds="$seconds" -v peak="$peak_mb" '
+  awk -v name="$name" -v tool="$1" -v seconds="$seconds" -v cpu="$cpu_seconds" -v peak="$peak_mb" '
     { number = $NF; $NF = ""; sub(/ +$/, ""); value[$0] = number }
     END {
       outlines = "outlines" in value
-      printf "| %s | %s | %s | %s | %s | %s | %s |\n", name, tool,
+      printf "| %s | %s | %s | %s | %s | %s | %s | %s |\n", name, tool,
         outlines ? value["outlines"] " + " value["parts"] : "buildings" in value ? value["buildings"] : "",
         outlines ? value["heights by tag"] " / " value["heights by dsm"] " / " value["heights by levels"] " / " value["heights by default"] : "",
-        value["points"], seconds, peak
+        value["points"], seconds, cpu, peak
     }' "$out/priors/$name.log"
   ! command -v gdaldem >/dev/null || PRIORMAP_BIN=$(dirname "$(command -v priorinfo)") examples/render_prior.sh "$out/priors/$name" "$out/priors/$name.png" 45 20
 }
@@ -51,8 +54,8 @@ priors() {
   rm -rf "$out/priors"
   mkdir -p "$out/priors"
   say "Priors of real places"
-  echo "| place | tool | buildings + parts | heights by tag / DSM / levels / default | points | seconds | peak MB |"
-  echo "|---|---|---|---|---|---|---|"
+  echo "| place | tool | buildings + parts | heights by tag / DSM / levels / default | points | seconds | CPU seconds | peak MB |"
+  echo "|---|---|---|---|---|---|---|---|"
   local gothenburg=$data/overlap_gothenburg
   place helsinki osm2prior "$data/osm/helsinki.osm.pbf" --ground-height 0
   place munich_moosach osm2prior "$data/osm/munich_moosach.osm" --ground-height 510
