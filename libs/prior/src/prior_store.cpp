@@ -24,11 +24,21 @@ std::vector<std::byte> read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
-void verify(const std::filesystem::path& file, const std::vector<std::byte>& bytes, const TileEntry& entry) {
+std::string sha256_of(const std::vector<std::byte>& bytes) {
   Sha256 hash;
   hash.update(bytes);
-  if (hash.hex_digest() != entry.sha256)
+  return hash.hex_digest();
+}
+
+void verify(const std::filesystem::path& file, const std::string& sha256, const TileEntry& entry) {
+  if (sha256 != entry.sha256)
     throw FormatError(file, "does not have the sha256 that the index states: it was changed or damaged; make the prior again");
+}
+
+void check_count(const std::filesystem::path& file, const LasReader& reader, const TileEntry& entry) {
+  if (reader.header().num_points != entry.num_points)
+    throw FormatError(file, "holds " + std::to_string(reader.header().num_points) + " points, the index says " +
+                                std::to_string(entry.num_points) + "; make the prior again");
 }
 
 /// Fills columns that a tile written by another program may lack.
@@ -64,6 +74,15 @@ struct PriorStore::Impl {
       throw FormatError(path / tile_index_file_name, "holds " + std::to_string(index.size()) + " tiles, prior.json says " +
                                                          std::to_string(manifest.num_tiles) + "; make the prior again");
   }
+
+  TileEntry entry(TileKey key) const {
+    const std::optional<TileEntry> found = index.find(key);
+    if (!found) throw FormatError(directory, "has no tile " + TileGrid::name(key));
+    return *found;
+  }
+  Eigen::Vector3d origin(const TileEntry& entry) const {
+    return {double(grid.origin(entry.key.x)) / 1000.0, double(grid.origin(entry.key.y)) / 1000.0, std::floor(double(entry.min_z))};
+  }
 };
 
 PriorStore::PriorStore(const std::filesystem::path& directory) : impl_(std::make_unique<Impl>(directory)) {}
@@ -86,23 +105,33 @@ std::vector<TileKey> PriorStore::tiles_within(const Bounds2& bounds) const {
 }
 
 PriorTile PriorStore::load(TileKey key, bool verify_hash) const {
-  const std::optional<TileEntry> entry = impl_->index.find(key);
-  if (!entry) throw FormatError(impl_->directory, "has no tile " + TileGrid::name(key));
+  const TileEntry entry = impl_->entry(key);
   const std::filesystem::path file = tile_file(key);
   std::vector<std::byte> bytes = read_bytes(file);
-  if (verify_hash) verify(file, bytes, *entry);
+  if (verify_hash) verify(file, sha256_of(bytes), entry);
 
   PriorTile tile{key, {}};
-  const Eigen::Vector3d origin(double(impl_->grid.origin(key.x)) / 1000.0, double(impl_->grid.origin(key.y)) / 1000.0,
-                               std::floor(double(entry->min_z)));
+  const Eigen::Vector3d origin = impl_->origin(entry);
   LasReader reader(std::move(bytes), file.string());
-  if (reader.header().num_points != entry->num_points)
-    throw FormatError(file, "holds " + std::to_string(reader.header().num_points) + " points, the index says " +
-                                std::to_string(entry->num_points) + "; make the prior again");
-  reader.read(tile.points, entry->num_points, origin);
+  check_count(file, reader, entry);
+  reader.read(tile.points, entry.num_points, origin);
   tile.points.origin = origin;
   complete_columns(tile.points);
   return tile;
+}
+
+void PriorStore::for_each_block(TileKey key, std::size_t points_a_block, const std::function<void(const PointCloud&)>& consume) const {
+  const TileEntry entry = impl_->entry(key);
+  const std::filesystem::path file = tile_file(key);
+  if (!std::filesystem::is_regular_file(file)) throw IoError(file, "is missing or cannot be read; make the prior again");
+  verify(file, sha256_file(file), entry);
+  LasReader reader(file);
+  check_count(file, reader, entry);
+  PointCloud block;
+  while (reader.read(block, points_a_block, impl_->origin(entry))) {
+    complete_columns(block);
+    consume(block);
+  }
 }
 
 void PriorStore::for_each_feature(const std::function<void(std::uint32_t, const Feature&)>& consume) const {

@@ -36,6 +36,8 @@ class PriorStore {
   /// @throws IoError, FormatError when the prior has no such tile, its file is unreadable or, with `verify_hash`, its sha256 differs
   /// from the index.
   PriorTile load(TileKey key, bool verify_hash = true) const;
+  /// The same block by block, verified, for tiles of any size. Columns and origin as in `load`.
+  void for_each_block(TileKey key, std::size_t points_a_block, const std::function<void(const PointCloud&)>& consume) const;
 
   std::vector<Feature> features() const;
   /// The same one after the other, for priors whose features do not fit in memory. Outlines are in the prior's CRS.
