@@ -20,18 +20,19 @@ void SurfelMap::Block::merge(std::span<const Item> items, std::span<const std::u
   const std::size_t before = entries_.size();
   for (const std::uint32_t i : order) {
     const Item& item = items[i];
+    const float count = item.surfel.count;
     const auto same = [&](const Entry& entry) { return entry.voxel == item.voxel && belongs(entry, item, options); };
     const auto in_voxel = entries_.begin() + begin_[item.voxel], after_voxel = entries_.begin() + begin_[item.voxel + 1];
     auto entry = std::find_if(in_voxel, after_voxel, same);
     if (entry == after_voxel) entry = std::find_if(entries_.begin() + std::ptrdiff_t(before), entries_.end(), same);
     if (entry == entries_.end()) {
-      entries_.push_back({item.surfel, item.normal, item.sigma_m * item.sigma_m, item.voxel, item.of_prior, true});
+      entries_.push_back({item.surfel, count * item.normal, count * item.sigma_m * item.sigma_m, item.voxel, item.of_prior, true});
       continue;
     }
     if (entry->surfel.count >= float(options.max_count)) continue;
     priormap::merge(entry->surfel, item.surfel);
-    entry->normal_sum += item.normal;
-    entry->variance_sum += item.sigma_m * item.sigma_m;
+    entry->normal_sum += count * item.normal;
+    entry->variance_sum += count * item.sigma_m * item.sigma_m;
     entry->changed = true;
   }
   if (entries_.size() != before) order_by_voxel();

@@ -10,11 +10,11 @@ constexpr int block_voxels = 8;  // along an edge
 constexpr int voxels_a_block = block_voxels * block_voxels * block_voxels;
 constexpr std::size_t lane_padding = 16;  // whole SIMD registers may be read past the last surfel
 
-/// What is about to be merged into a block: a surfel, or a single point with a known normal.
+/// What is about to be merged into a block: a surfel of a scan, or of a prior with its normal, if known, and sigma.
 struct SurfelMap::Item {
   std::uint32_t block = 0;
   std::uint16_t voxel = 0;  // within the block, x fastest
-  bool of_prior = false;  // a single point: of use even where no plane can be told
+  bool of_prior = false;  // of use even where no plane can be told
   float sigma_m = 0;
   Surfel surfel;  // relative to the block's corner
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();

@@ -56,6 +56,21 @@ void SurfelMap::insert(const PointCloud& points) {
   insert_items(items);
 }
 
+void SurfelMap::insert(const PatchCloud& patches) {
+  std::vector<Item> items;
+  items.reserve(patches.size());
+  for (const SurfacePatch& patch : patches.patches) {
+    Item item = place(patches.origin + patch.mean.cast<double>());
+    item.surfel.count = patch.count;
+    item.surfel.covariance = patch.covariance;
+    item.of_prior = true;
+    item.normal = patch.normal;
+    item.sigma_m = patch.sigma_m;
+    items.push_back(item);
+  }
+  insert_items(items);
+}
+
 void SurfelMap::insert(const SurfelCloud& scan, const Eigen::Isometry3d& T_map_scan) {
   std::vector<Item> items;
   items.reserve(scan.size());

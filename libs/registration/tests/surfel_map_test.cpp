@@ -71,6 +71,33 @@ TEST(SurfelMap, AVoxelAtACornerKeepsItsThreePlanesApart) {
   EXPECT_EQ(match->shape.directed, 1.0f);
 }
 
+TEST(SurfelMap, PatchesOfAPriorAreWorthTheirPoints) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> u(-6, 6);
+  PointCloud roof;   // one plane seen as given, one without normals
+  roof.origin = {40, -24, 8};
+  for (int i = 0; i < 20000; ++i) {
+    const float x = u(random), y = u(random);
+    roof.xyz.push_back({x, y, 3 + 0.5f * x});
+    roof.normal.push_back(i % 2 ? Eigen::Vector3f(-0.5f, 0, 1).normalized() : Eigen::Vector3f(0, 0, 0));
+    roof.sigma_m.push_back(0.1f * float(1 + i % 3));
+  }
+  SurfelMap of_points, of_patches;
+  of_points.insert(roof);
+  of_patches.insert(reduce_to_patches(roof, 1.0));   // voxels of the map, as the origin is whole
+  ASSERT_EQ(of_points.size(), of_patches.size());
+  for (int trial = 0; trial < 300; ++trial) {
+    const Eigen::Vector3d query = roof.origin + Eigen::Vector3d(u(random), u(random), u(random));
+    const auto a = of_points.nearest(query), b = of_patches.nearest(query);
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (!a || a->second_distance_m - a->distance_m < 0.05) continue;
+    EXPECT_LT((a->mean - b->mean).norm(), 1e-4);
+    EXPECT_LT((a->shape.normal - b->shape.normal).norm(), 1e-3);
+    EXPECT_NEAR(a->shape.sigma_m, b->shape.sigma_m, 1e-3);
+    EXPECT_EQ(a->shape.directed, b->shape.directed);
+  }
+}
+
 TEST(SurfelMap, ScansAddUpToTheSurfaceTheyShow) {
   // A wall turned by 30 degrees, seen in five scans from different places, each a sparse part of it.
   const Eigen::Vector3d normal(std::cos(0.5), std::sin(0.5), 0), along(-std::sin(0.5), std::cos(0.5), 0);

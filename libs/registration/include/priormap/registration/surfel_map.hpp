@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <priormap/pointcloud/point_cloud.hpp>
+#include <priormap/pointcloud/surface_patches.hpp>
 #include <priormap/registration/instruction_set.hpp>
 #include <priormap/registration/surfel.hpp>
 #include <priormap/registration/voxel_index.hpp>
@@ -41,6 +42,8 @@ class SurfelMap {
 
   /// A prior's points, in the map's frame. Uses the columns normal and sigma_m where present. Points that are not finite are ignored.
   void insert(const PointCloud& points);
+  /// A prior's points reduced already, in the map's frame.
+  void insert(const PatchCloud& patches);
   /// A scan seen from `T_map_scan`.
   void insert(const SurfelCloud& scan, const Eigen::Isometry3d& T_map_scan);
   /// Drops each block whose centre is farther than `distance_m` from `center`.
