@@ -36,9 +36,9 @@ int main(int argc, char** argv) {
     if (check) faults = priormap::check_prior(directory, context.threads, context.events);
     if (!faults.empty() && !json) fail(faults);
     const priormap::PriorStore prior(directory);
+    if (index) make_lookup(prior, context);
     std::cout << (json ? priormap::describe_prior_json(prior, check ? &faults : nullptr) : priormap::describe_prior(prior));
     if (!faults.empty()) fail(faults);
-    if (index) make_lookup(prior, context);
     if (check) context.events.inform(directory + ": no fault found");
   });
 }
