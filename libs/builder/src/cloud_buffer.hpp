@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 
 #include <priormap/pointcloud/point_cloud.hpp>
@@ -14,6 +15,7 @@ class CloudBuffer {
   CloudBuffer(PriorWriter& writer, float sigma_m) : writer_(writer), sigma_m_(sigma_m) {}
 
   void begin(std::uint16_t source, std::uint32_t feature, PointClass point_class = PointClass::building) {
+    fill_columns();
     point_class_ = point_class;
     source_ = source;
     feature_ = feature;
@@ -24,22 +26,31 @@ class CloudBuffer {
       flush();
       cloud_.origin = position.array().round();
     }
-    const Eigen::Vector3d on_lattice = (position.array() * 1000).round() / 1000;
-    cloud_.xyz.push_back((on_lattice - cloud_.origin).cast<float>());
+    Eigen::Vector3d offset;
+    for (int axis = 0; axis < 3; ++axis) offset[axis] = (nearest(position[axis] * 1000) - cloud_.origin[axis] * 1000) * 0.001;
+    cloud_.xyz.push_back(offset.cast<float>());
     cloud_.normal.push_back(normal.cast<float>());
-    cloud_.classification.push_back(static_cast<std::uint8_t>(point_class_));
-    cloud_.sigma_m.push_back(sigma_m_);
-    cloud_.source.push_back(source_);
-    cloud_.feature.push_back(feature_);
   }
 
   void flush() {
+    fill_columns();
     if (!cloud_.empty()) writer_.add(cloud_);
     cloud_.clear();
   }
 
  private:
-  static constexpr std::size_t most_points_a_cloud = 200000;
+  /// Halves away from zero, as std::round, which is a call.
+  static double nearest(double v) { return static_cast<double>(static_cast<std::int64_t>(v + std::copysign(0.5, v))); }
+
+  /// Of the points since `begin`, which have these in common.
+  void fill_columns() {
+    cloud_.classification.resize(cloud_.size(), static_cast<std::uint8_t>(point_class_));
+    cloud_.sigma_m.resize(cloud_.size(), sigma_m_);
+    cloud_.source.resize(cloud_.size(), source_);
+    cloud_.feature.resize(cloud_.size(), feature_);
+  }
+
+  static constexpr std::size_t most_points_a_cloud = 16384;   // stays in the cache
   static constexpr double farthest_from_origin_m = 2000;   // float32 stays within a quarter of a millimetre
 
   PriorWriter& writer_;

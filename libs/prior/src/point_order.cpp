@@ -8,48 +8,50 @@
 namespace priormap {
 namespace {
 
-struct Keyed {
-  std::uint64_t key;
-  std::uint32_t index;
-};
+constexpr int digit_bits = 11;
 
 struct Range {
   std::int32_t low = INT32_MAX, high = INT32_MIN;
   void include(std::int32_t v) { low = std::min(low, v), high = std::max(high, v); }
-  int bits() const { return std::bit_width(std::uint32_t(std::int64_t(high) - low)); }
+  std::uint32_t offset(std::int32_t v) const { return std::uint32_t(std::int64_t(v) - low); }
+  int bits() const { return std::bit_width(offset(high)); }
 };
 
-/// Keys whose order is that of (x, y, z), as far as 64 bits reach, in as few bits as the extent of the points needs.
-std::vector<Keyed> position_keys(const std::vector<PointRecord>& points, int& key_bits) {
-  Range x, y, z;
-  for (const PointRecord& p : points) x.include(p.x), y.include(p.y), z.include(p.z);
-  const int dropped_z_bits = std::max(0, x.bits() + y.bits() + z.bits() - 64);
-  const int z_bits = z.bits() - dropped_z_bits, yz_bits = y.bits() + z_bits;
-  key_bits = x.bits() + yz_bits;
-  std::vector<Keyed> keys(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PointRecord& p = points[i];
-    const auto offset = [](std::int32_t v, const Range& range) { return std::uint64_t(std::int64_t(v) - range.low); };
-    keys[i] = {(offset(p.x, x) << yz_bits) | (offset(p.y, y) << z_bits) | (offset(p.z, z) >> dropped_z_bits), std::uint32_t(i)};
-  }
-  return keys;
-}
+/// For each point the leading bits of (x, y, z) above its number: as many as fit and four passes sort. Few points share them.
+struct PositionKeys {
+  std::vector<std::uint64_t> keys;
+  int index_bits = 0, position_bits = 0;
 
-/// Least significant digit first, stable; digits that all keys share are skipped.
-void radix_sort(std::vector<Keyed>& keys, int key_bits) {
-  constexpr int digit_bits = 11;
-  constexpr std::size_t buckets = std::size_t(1) << digit_bits;
-  std::vector<Keyed> sorted(keys.size());
-  for (int shift = 0; shift < key_bits; shift += digit_bits) {
-    std::array<std::uint32_t, buckets> start{};
-    for (const Keyed& k : keys) ++start[(k.key >> shift) & (buckets - 1)];
-    if (start[(keys[0].key >> shift) & (buckets - 1)] == keys.size()) continue;
-    std::uint32_t sum = 0;
-    for (std::uint32_t& s : start) sum += std::exchange(s, sum);
-    for (const Keyed& k : keys) sorted[start[(k.key >> shift) & (buckets - 1)]++] = k;
-    keys.swap(sorted);
+  explicit PositionKeys(const std::vector<PointRecord>& points) : keys(points.size()), index_bits(std::bit_width(points.size())) {
+    Range x, y, z;
+    for (const PointRecord& p : points) x.include(p.x), y.include(p.y), z.include(p.z);
+    const int all_bits = x.bits() + y.bits() + z.bits();
+    position_bits = std::min({all_bits, 4 * digit_bits, 64 - index_bits});
+    const int dropped = all_bits - position_bits, dropped_xy = std::max(0, dropped - z.bits()), room_for_z = std::max(0, z.bits() - dropped);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::uint64_t xy = std::uint64_t(x.offset(points[i].x)) << y.bits() | y.offset(points[i].y);
+      const std::uint64_t position = xy >> dropped_xy << room_for_z | std::uint64_t(z.offset(points[i].z)) >> dropped;
+      keys[i] = position << index_bits | i;
+    }
   }
-}
+  std::uint64_t position(std::size_t i) const { return keys[i] >> index_bits; }
+  std::size_t index(std::size_t i) const { return keys[i] & ((std::uint64_t(1) << index_bits) - 1); }
+
+  /// By position; least significant digit first. Digits that all keys share are skipped.
+  void radix_sort() {
+    constexpr std::size_t buckets = std::size_t(1) << digit_bits;
+    std::vector<std::uint64_t> sorted(keys.size());
+    for (int shift = index_bits; shift < index_bits + position_bits; shift += digit_bits) {
+      std::array<std::uint32_t, buckets> start{};
+      for (const std::uint64_t k : keys) ++start[(k >> shift) & (buckets - 1)];
+      if (start[(keys[0] >> shift) & (buckets - 1)] == keys.size()) continue;
+      std::uint32_t sum = 0;
+      for (std::uint32_t& s : start) sum += std::exchange(s, sum);
+      for (const std::uint64_t k : keys) sorted[start[(k >> shift) & (buckets - 1)]++] = k;
+      keys.swap(sorted);
+    }
+  }
+};
 
 /// In order of position already, each position once.
 bool is_sorted(const std::vector<PointRecord>& points) {
@@ -61,20 +63,23 @@ bool is_sorted(const std::vector<PointRecord>& points) {
 
 void sort_and_unite(std::vector<PointRecord>& points) {
   if (is_sorted(points)) return;
-  int key_bits = 0;
-  std::vector<Keyed> keys = position_keys(points, key_bits);
-  constexpr std::size_t radix_pays = 256;
-  if (keys.size() >= radix_pays)
-    radix_sort(keys, key_bits);
+  PositionKeys order(points);
+  constexpr std::size_t radix_pays = 256, ahead = 16;
+  if (points.size() >= radix_pays)
+    order.radix_sort();
   else
-    std::sort(keys.begin(), keys.end(), [](const Keyed& a, const Keyed& b) { return a.key < b.key; });
+    std::sort(order.keys.begin(), order.keys.end());
 
+  const std::size_t count = points.size();
   std::vector<PointRecord> sorted;
-  sorted.reserve(points.size());
-  for (std::size_t first = 0; first < keys.size();) {
+  sorted.reserve(count);
+  for (std::size_t first = 0; first < count;) {
     const std::size_t start = sorted.size();
     std::size_t last = first;
-    for (; last < keys.size() && keys[last].key == keys[first].key; ++last) sorted.push_back(points[keys[last].index]);
+    for (; last < count && order.position(last) == order.position(first); ++last) {
+      if (last + ahead < count) __builtin_prefetch(&points[order.index(last + ahead)]);
+      sorted.push_back(points[order.index(last)]);
+    }
     if (last - first > 1) {
       const auto group = sorted.begin() + std::ptrdiff_t(start);
       std::sort(group, sorted.end());
