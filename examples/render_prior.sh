@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Pictures of a prior (or of a map: the same kind of folder): every point shaded by its normal, ground green, walls grey, roofs red.
+# Pictures of a prior (or of a map: the same kind of folder): every point shaded by its normal, ground green, walls grey, roofs red; points
+# without a normal by their height, darker below.
 #   examples/render_prior.sh PRIOR PICTURE.png [ELEVATION [AZIMUTH]]     90: from above (default); 35 200: obliquely, looking to 200 degrees
 # Needs gdaldem (Debian: gdal-bin).
 set -euo pipefail
 PATH="${PRIORMAP_BIN:-$(dirname "$0")/../build/release/bin}:$PATH"
-[ $# -ge 2 ] || { sed -n '2,4s/^# *//p' "$0" >&2; exit 2; }
+[ $# -ge 2 ] || { sed -n '2,5s/^# *//p' "$0" >&2; exit 2; }
 prior=$1 picture=$2 elevation=${3:-90} azimuth=${4:-0}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -32,7 +33,9 @@ awk -v elevation="$elevation" -v azimuth="$azimuth" -v spacing="$spacing" '
   }
   { view() }
   NR == FNR {
-    if (NR == 2) { west = east = across; south = north = up }
+    if (NR == 2) { west = east = across; south = north = up; low = high = $3 }
+    if ($3 < low) low = $3
+    if ($3 > high) high = $3
     if (across < west) west = across
     if (across > east) east = across
     if (up < south) south = up
@@ -51,7 +54,8 @@ awk -v elevation="$elevation" -v azimuth="$azimuth" -v spacing="$spacing" '
     depth = away * cos_e - $3 * sin_e
     if (pixel in nearest && nearest[pixel] <= depth) next
     nearest[pixel] = depth
-    light = nx ? 0.4 * $nx - 0.5 * $ny + 0.75 * $nz : 0.7
+    has_normal = nx && ($nx != 0 || $ny != 0 || $nz != 0)
+    light = has_normal ? 0.4 * $nx - 0.5 * $ny + 0.75 * $nz : high > low ? sqrt(($3 - low) / (high - low)) : 0.7
     colour = $class == 2 ? 1 : $class != 6 ? 3 : $nz > 0.2 ? 4 : 2   # LAS classes: 2 ground, 6 building
     value[pixel] = 1000 * colour + int(90 + 165 * (light < 0 ? 0 : light > 1 ? 1 : light))
   }
