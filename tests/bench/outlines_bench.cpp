@@ -1,11 +1,18 @@
 #include <benchmark/benchmark.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <priormap/core/parallel.hpp>
 #include <priormap/geodesy/transformer.hpp>
+#include <priormap/sources/osm_footprints.hpp>
+#include <priormap/sources/osm_writer.hpp>
 #include <priormap/tessellation/extrude.hpp>
 #include <priormap/tessellation/normalize.hpp>
 #include <priormap/tessellation/sample.hpp>
 #include <priormap/tessellation/triangulate.hpp>
 #include <random>
+
+#include "outline_stages.hpp"
 
 using namespace priormap;
 
@@ -72,5 +79,27 @@ void sample_blocks(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(num_points));
 }
 BENCHMARK(sample_blocks);
+
+/// From an OSM file of 250,000 buildings to triangles in the prior's CRS. Argument: threads; items are buildings.
+void read_project_triangulate(benchmark::State& state) {
+  const auto file = std::filesystem::temp_directory_path() / ("outlines_bench_" + std::to_string(::getpid()) + ".osm.pbf");
+  OsmExtract extract;
+  for (Ring2& ring : town(250'000)) extract.areas.push_back({{std::move(ring), {}}, {{"building", "yes"}, {"height", "8"}}});
+  write_osm(file, extract);
+  const int threads = static_cast<int>(state.range(0));
+  const std::vector<Transformer> prior_from_outlines{Transformer(Crs::parse("EPSG:4326"), Crs::parse("EPSG:32632"))};
+  std::size_t buildings = 0;
+  for (auto _ : state) {
+    Diagnostics diagnostics;
+    const auto projected = project_footprints(read_osm_footprints({file}, threads, diagnostics), prior_from_outlines, threads, diagnostics);
+    parallel_for(projected.size(), threads, [&](std::size_t i) {
+      for (const Polygon2& polygon : projected[i].polygons) benchmark::DoNotOptimize(triangulate(polygon));
+    });
+    buildings += projected.size();
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(buildings));
+  std::filesystem::remove(file);
+}
+BENCHMARK(read_project_triangulate)->Arg(1)->Arg(2)->UseRealTime()->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include <priormap/geodesy/interpolated_transformer.hpp>
 #include <priormap/tessellation/normalize.hpp>
 
 #include "chunks.hpp"
@@ -11,19 +12,19 @@ namespace {
 constexpr std::size_t chunk_size = 512;
 
 /// All rings of a stretch of footprints at once.
-void transform(std::span<Footprint> footprints, const Transformer& transformer) {
+void transform(std::span<Footprint> footprints, InterpolatedTransformer& transformer) {
   std::vector<Eigen::Vector3d> points;
   for (const Footprint& footprint : footprints)
     for (const Ring2& ring : footprint.rings)
       for (const Eigen::Vector2d& p : ring) points.emplace_back(p.x(), p.y(), 0);
-  transformer.forward(points);
+  transformer.apply(points);
   auto next = points.begin();
   for (Footprint& footprint : footprints)
     for (Ring2& ring : footprint.rings)
       for (Eigen::Vector2d& p : ring) p = (next++)->head<2>();
 }
 
-void transform_by_file(std::span<Footprint> footprints, const std::vector<Transformer>& transformers) {
+void transform_by_file(std::span<Footprint> footprints, std::vector<InterpolatedTransformer>& transformers) {
   while (!footprints.empty()) {
     const std::uint16_t file = footprints.front().file;
     const auto other = std::ranges::find_if(footprints, [&](const Footprint& footprint) { return footprint.file != file; });
@@ -64,8 +65,8 @@ std::vector<ProjectedFootprint> project_footprints(std::vector<Footprint> footpr
   std::vector<ProjectedFootprint> projected(footprints.size());
   std::vector<Diagnostics> of_chunk((footprints.size() + chunk_size - 1) / chunk_size);
   for_each_chunk(
-      footprints.size(), chunk_size, threads, [&] { return prior_from_outlines; },
-      [&](const std::vector<Transformer>& transformers, std::size_t chunk, std::size_t begin, std::size_t end) {
+      footprints.size(), chunk_size, threads, [&] { return std::vector<InterpolatedTransformer>(prior_from_outlines.begin(), prior_from_outlines.end()); },
+      [&](std::vector<InterpolatedTransformer>& transformers, std::size_t chunk, std::size_t begin, std::size_t end) {
         transform_by_file(std::span(footprints).subspan(begin, end - begin), transformers);
         for (std::size_t i = begin; i < end; ++i) projected[i] = in_order(std::move(footprints[i]), of_chunk[chunk]);
       });
