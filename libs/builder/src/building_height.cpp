@@ -38,6 +38,14 @@ double storeys_m(const BuildingAttributes& attributes, const Rise& rise, double 
 
 }  // namespace
 
+double height_sigma_m(HeightRule rule, const OutlineOptions& options) {
+  switch (rule) {
+    case HeightRule::levels: return options.levels_sigma_m;
+    case HeightRule::fallback: return options.default_sigma_m;
+    default: return options.height_sigma_m;
+  }
+}
+
 std::string to_string(HeightRule rule) {
   switch (rule) {
     case HeightRule::tag: return "tag";

@@ -12,7 +12,7 @@ namespace priormap {
 /// not depend on which points share a cloud.
 class CloudBuffer {
  public:
-  CloudBuffer(PriorWriter& writer, float sigma_m) : writer_(writer), sigma_m_(sigma_m) {}
+  explicit CloudBuffer(PriorWriter& writer) : writer_(writer) {}
 
   void begin(std::uint16_t source, std::uint32_t feature, PointClass point_class = PointClass::building) {
     fill_columns();
@@ -21,7 +21,7 @@ class CloudBuffer {
     feature_ = feature;
   }
 
-  void add(const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
+  void add(const Eigen::Vector3d& position, const Eigen::Vector3d& normal, double sigma_m) {
     if (cloud_.empty() || cloud_.size() >= most_points_a_cloud || (position - cloud_.origin).cwiseAbs().maxCoeff() > farthest_from_origin_m) {
       flush();
       cloud_.origin = position.array().round();
@@ -30,6 +30,7 @@ class CloudBuffer {
     for (int axis = 0; axis < 3; ++axis) offset[axis] = (nearest(position[axis] * 1000) - cloud_.origin[axis] * 1000) * 0.001;
     cloud_.xyz.push_back(offset.cast<float>());
     cloud_.normal.push_back(normal.cast<float>());
+    cloud_.sigma_m.push_back(static_cast<float>(sigma_m));
   }
 
   void flush() {
@@ -45,7 +46,6 @@ class CloudBuffer {
   /// Of the points since `begin`, which have these in common.
   void fill_columns() {
     cloud_.classification.resize(cloud_.size(), static_cast<std::uint8_t>(point_class_));
-    cloud_.sigma_m.resize(cloud_.size(), sigma_m_);
     cloud_.source.resize(cloud_.size(), source_);
     cloud_.feature.resize(cloud_.size(), feature_);
   }
@@ -54,7 +54,6 @@ class CloudBuffer {
   static constexpr double farthest_from_origin_m = 2000;   // float32 stays within a quarter of a millimetre
 
   PriorWriter& writer_;
-  float sigma_m_;
   PointClass point_class_ = PointClass::building;
   std::uint16_t source_ = 0;
   std::uint32_t feature_ = 0;

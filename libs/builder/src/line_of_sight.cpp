@@ -15,6 +15,7 @@ namespace {
 
 constexpr double cell_m = 1;
 constexpr double lift_m = 0.1;   // rays start in front of the face, clear of a wall that touches it
+constexpr double rise_m = 2;     // of a roof over its eaves
 
 using Cell = std::array<std::int32_t, 3>;
 
@@ -105,9 +106,10 @@ void LineOfSight::find_seen(const FacePoints& points, Skin skin, std::vector<Pat
         patches[i].is_seen = way.head<2>().norm() <= range_m_;
         continue;
       }
+      const bool rises = skin == Skin::may_rise && normal.z() > 0.99;
       const double in_front = normal.dot(way);
-      if (way.norm() > range_m_ || (skin == Skin::closed && in_front <= 0)) continue;
-      const Eigen::Vector3d from = point + std::copysign(lift_m, in_front) * normal;
+      if (way.norm() > range_m_ || (skin != Skin::open && !rises && in_front <= 0)) continue;
+      const Eigen::Vector3d from = point + (rises ? rise_m : std::copysign(lift_m, in_front)) * normal;
       asked.push_back(i);
       segments.push_back({(from - scene_->rays.origin()).cast<float>(), (viewpoint - scene_->rays.origin()).cast<float>()});
     }

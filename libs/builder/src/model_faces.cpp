@@ -8,6 +8,7 @@ namespace priormap {
 namespace {
 
 constexpr double planarity_m = 0.01;   // val3dity's --planarity_d2p_tol
+constexpr double longest_face_m = 5000, largest_building_m2 = 10e6;   // all faces of one; each of a terrain model
 
 /// Drops repeated points; false when fewer than three are left.
 bool clean(Ring3& ring, const std::string& feature, Diagnostics& diagnostics) {
@@ -31,6 +32,16 @@ double deviation_from_plane(const Polygon3& polygon, const Eigen::Vector3d& norm
   return deviation;
 }
 
+/// What no building is, but a wrong digit makes: points for it would fill the memory.
+bool is_implausible(const Polygon3& polygon, double area_m2) {
+  Eigen::Vector3d low = polygon.exterior.front(), high = low;
+  for (const Eigen::Vector3d& p : polygon.exterior) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return !((high - low).norm() <= longest_face_m && area_m2 <= largest_building_m2);
+}
+
 SurfaceClass class_by_slope(const Eigen::Vector3d& normal) {
   return normal.z() > 0.3 ? SurfaceClass::roof : normal.z() < -0.3 ? SurfaceClass::ground_surface : SurfaceClass::wall;
 }
@@ -45,6 +56,7 @@ void turn_over(ModelFace& face) {
 std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diagnostics) {
   std::vector<ModelFace> faces;
   faces.reserve(model.polygons.size());
+  double total_m2 = 0;
   for (const ModelPolygon& stated : model.polygons) {
     if (!stated.closed) diagnostics.add(DiagnosticCode::ring_not_closed, model.id, "a ring does not repeat its first point");
     ModelFace face{stated.polygon, Eigen::Vector3d::Zero(), stated.surface_class};
@@ -55,6 +67,12 @@ std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diag
       diagnostics.add(DiagnosticCode::degenerate_geometry, model.id, "a polygon without area");
       continue;
     }
+    const double area_m2 = 0.5 * twice_area.norm();
+    if (is_implausible(face.polygon, total_m2 + area_m2)) {
+      diagnostics.add(DiagnosticCode::implausible_size, model.id, "larger than any building; left out");
+      continue;
+    }
+    if (!model.terrain) total_m2 += area_m2;
     face.normal = twice_area.normalized();
     const double deviation = deviation_from_plane(face.polygon, face.normal);
     face.planar = deviation <= planarity_m;

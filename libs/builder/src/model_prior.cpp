@@ -92,53 +92,56 @@ class ModelSampler {
  public:
   ModelSampler(const WallIndex& walls, const LineOfSight* sight, const Crs& prior, const PriorOptions& prior_options, const ModelOptions& model_options, PriorWriter& writer)
       : walls_(walls), sight_(sight), bbox_(prior_options, prior), visible_only_(model_options.visible_faces_only()), sigma_m_(model_options.sigma_m), writer_(writer),
-        sampler_(prior_options.spacing_or(0.5)), buffer_(writer, static_cast<float>(model_options.sigma_m)) {}
+        sampler_(prior_options.spacing_or(0.5)), buffer_(writer) {}
 
   SightCounts sample(const BuildingModel& model, const std::string& source_id, std::uint16_t source, Diagnostics& diagnostics) {
     const std::vector<ModelFace> faces = model_faces(model, diagnostics);
-    collect_points(faces);
-    std::vector<bool> seen;
-    if (sight_) seen = sight_->seen(collected_, LineOfSight::Skin::open);
-
+    const bool seen_as_a_whole = sight_ && !model.terrain;   // a terrain model may cover a city: face by face
     SightCounts counts;
     std::optional<std::uint32_t> feature;
-    for (std::size_t i = 0; i < collected_.points.size(); ++i) {
-      const Eigen::Vector3d& p = collected_.points[i];
-      if (bbox_.is_active() && !bbox_.contains(p.x(), p.y())) continue;
-      ++counts.sampled;
-      if (sight_ && !seen[i]) {
-        ++counts.out_of_sight;
-        continue;
+    const auto write_collected = [&] {
+      std::vector<bool> seen;
+      if (sight_) seen = sight_->seen(collected_, LineOfSight::Skin::open);
+      for (std::size_t i = 0; i < collected_.points.size(); ++i) {
+        const Eigen::Vector3d& p = collected_.points[i];
+        if (bbox_.is_active() && !bbox_.contains(p.x(), p.y())) continue;
+        ++counts.sampled;
+        if (sight_ && !seen[i]) {
+          ++counts.out_of_sight;
+          continue;
+        }
+        if (!feature) {
+          feature = model.terrain ? PointCloud::no_feature : writer_.add_feature(feature_of(model, faces, source_id));
+          buffer_.begin(source, *feature, model.terrain ? PointClass::ground : PointClass::building);
+        }
+        buffer_.add(p, collected_.normals[i], sigma_m_);
       }
-      if (!feature) {
-        feature = model.terrain ? PointCloud::no_feature : writer_.add_feature(feature_of(model, faces, source_id));
-        buffer_.begin(source, *feature, model.terrain ? PointClass::ground : PointClass::building);
-      }
-      buffer_.add(p, collected_.normals[i]);
+      collected_.clear();
+    };
+    for (std::uint32_t number = 0; number < faces.size(); ++number) {
+      collect_points(faces[number], number);
+      if (!seen_as_a_whole) write_collected();
     }
+    if (seen_as_a_whole) write_collected();
     return counts;
   }
   void flush() { buffer_.flush(); }
 
  private:
-  void collect_points(const std::vector<ModelFace>& faces) {
-    collected_.clear();
-    for (std::uint32_t number = 0; number < faces.size(); ++number) {
-      const ModelFace& face = faces[number];
-      if (visible_only_ && !can_be_seen(face)) continue;
-      points_.clear();
-      normals_.clear();
-      if (face.planar) {
-        sampler_.sample(face.polygon, points_);
-        if (visible_only_) walls_.remove_shared(face.normal, points_);
-        normals_.assign(points_.size(), face.normal);
-      } else {
-        sampler_.sample(triangulate(face.polygon), points_, normals_);
-      }
-      collected_.points.insert(collected_.points.end(), points_.begin(), points_.end());
-      collected_.normals.insert(collected_.normals.end(), normals_.begin(), normals_.end());
-      collected_.faces.resize(collected_.points.size(), number);
+  void collect_points(const ModelFace& face, std::uint32_t number) {
+    if (visible_only_ && !can_be_seen(face)) return;
+    points_.clear();
+    normals_.clear();
+    if (face.planar) {
+      sampler_.sample(face.polygon, points_);
+      if (visible_only_) walls_.remove_shared(face.normal, points_);
+      normals_.assign(points_.size(), face.normal);
+    } else {
+      sampler_.sample(triangulate(face.polygon), points_, normals_);
     }
+    collected_.points.insert(collected_.points.end(), points_.begin(), points_.end());
+    collected_.normals.insert(collected_.normals.end(), normals_.begin(), normals_.end());
+    collected_.faces.resize(collected_.points.size(), number);
   }
 
   Feature feature_of(const BuildingModel& model, const std::vector<ModelFace>& faces, const std::string& source_id) const {

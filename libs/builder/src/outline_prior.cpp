@@ -37,6 +37,9 @@ std::vector<std::pair<std::string, std::string>> facts_of(const OutlineCounts& c
   for (int rule = 0; rule < num_height_rules; ++rule)
     facts.emplace_back("heights_by_" + to_string(HeightRule(rule)), std::to_string(counts.by_rule[static_cast<std::size_t>(rule)]));
   facts.emplace_back("faces", options.faces);
+  facts.emplace_back("sigma_m", (std::ostringstream() << "walls " << options.sigma_m << ", roofs by tag or dsm " << options.height_sigma_m << ", by levels "
+                                                      << options.levels_sigma_m << ", by default " << options.default_sigma_m)
+                                    .str());
   for (const auto& [name, file] : {std::pair{"terrain", options.terrain}, {"surface", options.heights_from}}) {
     if (file.empty()) continue;
     facts.emplace_back(name, std::filesystem::path(file).filename().string());

@@ -10,6 +10,7 @@ namespace priormap {
 namespace {
 
 constexpr std::size_t chunk_size = 512;
+constexpr double longest_building_m = 5000, largest_building_m2 = 10e6;
 
 /// All rings of a stretch of footprints at once.
 void transform(std::span<Footprint> footprints, InterpolatedTransformer& transformer) {
@@ -41,6 +42,14 @@ bool is_finite(const std::vector<Ring2>& rings) {
   return true;
 }
 
+/// What no building is, but a wrong digit makes: points for it would fill the memory.
+bool is_implausible(const ProjectedFootprint& projected) {
+  double size = 0;
+  for (const Polygon2& polygon : projected.polygons) size += area(polygon);
+  const Bounds2& b = projected.bounds;
+  return !projected.polygons.empty() && !(std::max(b.max_x - b.min_x, b.max_y - b.min_y) <= longest_building_m && size <= largest_building_m2);
+}
+
 ProjectedFootprint in_order(Footprint&& footprint, Diagnostics& diagnostics) {
   ProjectedFootprint projected{{}, {}, {}};
   if (is_finite(footprint.rings))
@@ -53,6 +62,10 @@ ProjectedFootprint in_order(Footprint&& footprint, Diagnostics& diagnostics) {
     corners.insert(corners.end(), {{b.min_x, b.min_y}, {b.max_x, b.max_y}});
   }
   projected.bounds = bounds_of(corners);
+  if (is_implausible(projected)) {
+    diagnostics.add(DiagnosticCode::implausible_size, footprint.id, "larger than any building; left out");
+    projected.polygons.clear();
+  }
   footprint.rings = {};
   projected.footprint = std::move(footprint);
   return projected;

@@ -98,8 +98,8 @@ class Raiser {
     solid.top_z = ground.median_z + height.top_m;
     solid.has_walls = attributes.has_walls;
     solid.bounds = bounds_of(outline.exterior);
-    if (attributes.roof_shape != RoofShape::flat && attributes.roof_shape != RoofShape::other && height.eaves_m < height.top_m) {
-      solid.roof = make_roof(outline, ground.median_z + height.eaves_m, spec(attributes, height.top_m - height.eaves_m));
+    if (attributes.roof_shape != RoofShape::flat && attributes.roof_shape != RoofShape::other) {
+      if (height.eaves_m < height.top_m) solid.roof = make_roof(outline, ground.median_z + height.eaves_m, spec(attributes, height.top_m - height.eaves_m));
       if (!solid.roof) report_flat(own, "cannot be built over its outline", diagnostics);
     }
     solid.eaves_z = solid.roof ? ground.median_z + height.eaves_m : solid.top_z;

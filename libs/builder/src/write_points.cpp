@@ -18,6 +18,9 @@ namespace {
 
 constexpr std::size_t chunk_size = 64;
 
+/// A point's sigma is that of the direction it is known in: a wall's of the outline, a roof's of the height.
+bool is_roof(const Eigen::Vector3d& normal) { return std::abs(normal.z()) > 0.3; }
+
 /// Neighbours one after the other: they fall into the same tiles and look at the same solids.
 std::vector<std::uint32_t> order_by_place(const std::vector<Building>& buildings) {
   constexpr double block_m = 500;
@@ -44,15 +47,17 @@ class BuildingSampler {
   BuildingSampler(const SolidRow& row, const SolidIndex& index, const std::vector<Building>& buildings, const LineOfSight* sight, const Crs& prior,
                   const PriorOptions& prior_options, const OutlineOptions& outline_options, PriorWriter& writer)
       : row_(row), index_(index), buildings_(buildings), sight_(sight), bbox_(prior_options, prior), visible_only_(outline_options.visible_faces_only()),
-        writer_(writer), sampler_(prior_options.spacing_or(0.5)), buffer_(writer, static_cast<float>(outline_options.sigma_m)) {}
+        options_(outline_options),
+        writer_(writer), sampler_(prior_options.spacing_or(0.5)), buffer_(writer) {}
 
   SightCounts sample(std::uint32_t building) {
     const std::span solids(row_.solids.begin() + row_.first_of[building], row_.solids.begin() + row_.first_of[building + 1]);
     if (bbox_.outer() && std::ranges::none_of(solids, [&](const BuildingSolid& solid) { return meet(*bbox_.outer(), solid.bounds); })) return {};
     collect_points(building);
     std::vector<bool> seen;
-    if (sight_) seen = sight_->seen(collected_, solids.front().has_walls ? LineOfSight::Skin::closed : LineOfSight::Skin::open);
+    if (sight_) seen = sight_->seen(collected_, solids.front().has_walls ? LineOfSight::Skin::may_rise : LineOfSight::Skin::open);
 
+    const double roof_sigma_m = height_sigma_m(buildings_[building].rule, options_);
     SightCounts counts;
     bool known = false;
     for (std::size_t i = 0; i < collected_.points.size(); ++i) {
@@ -65,7 +70,7 @@ class BuildingSampler {
       }
       if (!known) buffer_.begin(buildings_[building].file, writer_.add_feature(buildings_[building].feature));
       known = true;
-      buffer_.add(p, collected_.normals[i]);
+      buffer_.add(p, collected_.normals[i], is_roof(collected_.normals[i]) ? roof_sigma_m : options_.sigma_m);
     }
     return counts;
   }
@@ -94,6 +99,7 @@ class BuildingSampler {
   const LineOfSight* sight_;
   BboxFilter bbox_;
   bool visible_only_;
+  const OutlineOptions& options_;
   PriorWriter& writer_;
   FaceSampler sampler_;
   CloudBuffer buffer_;

@@ -73,6 +73,16 @@ TEST(LineOfSight, TheFrontOfAHouseIsSeenItsBackAndItsFlatRoofAreNot) {
   EXPECT_EQ(seen_share(sight, house, [](const auto& p, const auto& normal) { return normal.z() > 0.5 && p.y() < 1; }), 1) << "the roof's edge neighbours the front";
 }
 
+TEST(LineOfSight, ARoofOfUnknownShapeIsJudgedAsIfItRose) {
+  const Box house = box(0, 0, 10, 10, 8);
+  const auto roof = [](double from, double to) { return [=](const auto& p, const auto& normal) { return normal.z() > 0.5 && p.y() > from && p.y() < to; }; };
+  // Over the eaves, 6.2 m above the sensor and 10 m away, the line of sight climbs 0.62 m a metre: 2 m above the roof 3.2 m in.
+  const LineOfSight sight = sight_of({house}, {road});
+  EXPECT_EQ(seen_share(sight, house, roof(0, 3), LineOfSight::Skin::may_rise), 1);
+  EXPECT_EQ(seen_share(sight, house, roof(5.5, 9), LineOfSight::Skin::may_rise), 0);
+  EXPECT_EQ(seen_share(sight_of({house}, {{east + 5, north - 80, 1.8}}), house, roof(0, 10), LineOfSight::Skin::may_rise), 1) << "from afar all of it";
+}
+
 TEST(LineOfSight, BehindABlockOnlyTheTopOfATallerOneIsSeen) {
   const Box block = box(-100, 0, 200, 5, 6), tower = box(0, 20, 10, 10, 30);
   const LineOfSight sight = sight_of({block, tower}, {road});

@@ -3,11 +3,13 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <priormap/builder/outline_prior.hpp>
 #include <priormap/core/error.hpp>
 #include <priormap/prior/prior_store.hpp>
 #include <priormap/sources/raster_writer.hpp>
 #include <random>
+#include <set>
 
 namespace priormap {
 namespace {
@@ -82,8 +84,48 @@ TEST_F(OutlinePrior, ABlockHasWallsAndARoof) {
     const Eigen::Vector3d p = tile.points.position(i) - Eigen::Vector3d(east + 5, north + 3, 4);
     EXPECT_GT(tile.points.normal[i].cast<double>().dot(p), 0) << "normals look outward";
     EXPECT_EQ(tile.points.classification[i], std::uint8_t(PointClass::building));
-    EXPECT_EQ(tile.points.sigma_m[i], 1);
+    EXPECT_EQ(tile.points.sigma_m[i], tile.points.normal[i].z() > 0.5f ? 4 : 1) << "where the outline is, and how high a guessed roof";
   }
+}
+
+TEST_F(OutlinePrior, ARoofIsAsUncertainAsTheRuleThatGaveItsHeight) {
+  outline_options_.sigma_m = 0.7;
+  outline_options_.height_sigma_m = 0.5;
+  outline_options_.levels_sigma_m = 1.5;
+  outline_options_.default_sigma_m = 3;
+  std::vector<Footprint> town{box("tag", 0, 0, 10, 6), box("levels", 20, 0, 10, 6), box("default", 40, 0, 10, 6)};
+  town[0].attributes.height_m = 9;
+  town[1].attributes.levels = 3;
+  build(town);
+  const PriorStore store(folder_ / "prior");
+  std::map<std::string, std::set<float>> walls, roofs;
+  for (const TileEntry& tile : store.tiles()) {
+    const PointCloud points = store.load(tile.key).points;
+    for (std::size_t i = 0; i < points.size(); ++i) (points.normal[i].z() > 0.5f ? roofs : walls)[store.features()[points.feature[i]].id].insert(points.sigma_m[i]);
+  }
+  for (const auto& [id, sigmas] : walls) EXPECT_EQ(sigmas, std::set<float>{0.7f}) << id;
+  EXPECT_EQ(roofs["tag"], std::set<float>{0.5f});
+  EXPECT_EQ(roofs["levels"], std::set<float>{1.5f});
+  EXPECT_EQ(roofs["default"], std::set<float>{3.0f});
+}
+
+TEST_F(OutlinePrior, ARoofThatCannotBeBuiltIsFlatAndCounted) {
+  Footprint yard = box("yard", 0, 0, 30, 30);
+  yard.rings.push_back(box("", 10, 10, 10, 10).rings[0]);
+  yard.attributes.height_m = 12;
+  yard.attributes.roof_shape = RoofShape::dome;
+  Footprint odd = box("odd", 50, 0, 10, 10);
+  odd.attributes.height_m = 12;
+  odd.attributes.roof_shape = RoofShape::other;
+  const OutlineReport report = build({yard, odd});
+  EXPECT_EQ(report.diagnostics.counts().at(DiagnosticCode::unsupported_roof), 2u);
+  for (const Eigen::Vector3d& p : points()) EXPECT_LE(p.z(), 12000);
+}
+
+TEST_F(OutlinePrior, WhatIsLargerThanAnyBuildingIsCountedAndLeftOut) {
+  const OutlineReport report = build({box("house", 0, 0, 10, 10), box("continent", 0, 50, 1e6, 1e6), box("needle", 0, 20, 6000, 1)});
+  EXPECT_EQ(report.counts.outlines, 1u);
+  EXPECT_EQ(report.diagnostics.counts().at(DiagnosticCode::implausible_size), 2u);
 }
 
 TEST_F(OutlinePrior, WallsStartAtTheLowestGroundAndHeightsCountFromTheMedian) {

@@ -14,6 +14,9 @@ enum class HeightRule : std::uint8_t { tag, dsm, levels, fallback };
 inline constexpr int num_height_rules = 4;
 std::string to_string(HeightRule rule);   ///< "tag", "dsm", "levels", "default"
 
+/// Standard deviation of a roof whose height the rule gave [m].
+double height_sigma_m(HeightRule rule, const OutlineOptions& options);
+
 /// Heights above the ground.
 struct BuildingHeight {
   double top_m = 0;     ///< roof included

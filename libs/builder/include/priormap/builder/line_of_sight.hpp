@@ -19,7 +19,7 @@ struct FacePoints {
 };
 
 /// What a sensor sees from places along its way. A point counts as seen when a ray from one of these places, no longer than the range, reaches it or a spot within
-/// its neighbourhood of 1 to 2 m (27 cells of a global lattice of 1 m) on the same building. Errs on the side of seeing: the ground hides nothing, and where the
+/// a neighbourhood of 1 to 2 m (27 cells of a global lattice of 1 m) on the same building. Errs on the side of seeing: the ground hides nothing, and where the
 /// height of a place is not known, everything in range of it counts as seen. What is seen depends on viewpoints, occluders and the building alone.
 /// Const members are thread-safe.
 class LineOfSight {
@@ -30,8 +30,9 @@ class LineOfSight {
   LineOfSight(LineOfSight&&) noexcept;
 
   enum class Skin {
-    closed,   ///< nobody sees a face from behind
-    open,     ///< both sides can be seen: a canopy, or a model whose normals cannot be trusted
+    closed,     ///< nobody sees a face from behind
+    open,       ///< both sides can be seen: a canopy, or a model whose normals cannot be trusted
+    may_rise,   ///< closed, but its level faces are roofs of unknown shape, which may rise by 2 m
   };
   /// One flag a point.
   std::vector<bool> seen(const FacePoints& points, Skin skin) const;

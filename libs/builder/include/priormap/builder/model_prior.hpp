@@ -24,7 +24,7 @@ struct ModelOptions {
   void describe(Visitor& visit) {
     visit("lod", lod, {"only this level of detail; 0: of each building the highest", "", 0, 4});
     visit("faces", faces, {"visible or all: visible leaves out walls that buildings share, undersides and floors"});
-    visit("sigma", sigma_m, {"standard deviation of the models' surfaces", "m", 0.001, 100});
+    visit("sigma", sigma_m, {"standard deviation of the models' surfaces", "m", 0.001, 65});
     sight.describe(visit);
   }
 

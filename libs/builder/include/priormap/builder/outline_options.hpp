@@ -15,7 +15,10 @@ struct OutlineOptions {
   std::optional<double> ground_height_m;  ///< ground where no terrain is known
   std::string heights_from;               ///< raster of the surface; empty: none
   std::string faces = "visible";          ///< or "all"
-  double sigma_m = 1;
+  double sigma_m = 1;              ///< of outlines, and with them of walls
+  double height_sigma_m = 1;       ///< of roofs, by the rule that gave the height: tag or surface
+  double levels_sigma_m = 2;
+  double default_sigma_m = 4;
   SightOptions sight;
 
   template <class Visitor>
@@ -26,7 +29,10 @@ struct OutlineOptions {
     visit("ground-height", ground_height_m, {"ground under the buildings where no terrain is known; default: 0", "m", -1000, 10000});
     visit("heights-from", heights_from, {"raster of the surface, such as DSM.tif: height of a building without a height tag, from the 70th percentile inside its outline"});
     visit("faces", faces, {"visible or all: visible leaves out walls that buildings share, undersides and floors"});
-    visit("sigma", sigma_m, {"standard deviation of the outlines' positions", "m", 0.001, 100});
+    visit("sigma", sigma_m, {"standard deviation of the outlines' positions", "m", 0.001, 65});
+    visit("sigma-height", height_sigma_m, {"standard deviation of a roof whose height a tag, field or --heights-from gave", "m", 0.001, 65});
+    visit("sigma-levels", levels_sigma_m, {"standard deviation of a roof whose height levels gave", "m", 0.001, 65});
+    visit("sigma-default", default_sigma_m, {"standard deviation of a roof of default height", "m", 0.001, 65});
     sight.describe(visit);
   }
 

@@ -24,6 +24,7 @@ enum class DiagnosticCode : int {
   outside_terrain = 703,        ///< no ground height known at the feature
   unsupported_roof = 704,       ///< roof shape replaced by a flat roof
   degenerate_geometry = 705,    ///< no area or no extent left after cleaning
+  implausible_size = 706,       ///< larger than any building: coordinates gone wrong
 };
 
 /// What went wrong with single features of an otherwise good file. Not thread-safe: one per thread, then `merge`.
