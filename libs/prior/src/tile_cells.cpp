@@ -167,6 +167,8 @@ void TileCells::add_cell(int number, PointCloud points, const PriorUnits& units)
 
 std::shared_ptr<const TileCells> TileCells::open(const std::filesystem::path& file, const PriorStore& store, const TileEntry& tile, const CellGrid& grid,
                                                  const PriorUnits& units) {
+  std::error_code error;
+  if (std::filesystem::file_size(store.tile_file(tile.key), error) != tile.num_bytes) return nullptr;   // making it anew says what is wrong
   std::shared_ptr<TileCells> cells(new TileCells(file, store, tile, grid));
   try {
     cells->mapped_.emplace(file);

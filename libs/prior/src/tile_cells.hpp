@@ -27,7 +27,8 @@ class TileCells {
   /// Made from the tile.
   /// @throws IoError, FormatError when the tile is unreadable or damaged
   TileCells(const PriorStore& store, const TileEntry& tile, const CellGrid& grid, const PriorUnits& units);
-  /// The file, mapped; none when there is no such file to be read, or it is damaged, or was made from another tile or otherwise.
+  /// The file, mapped; none when there is no such file to be read, or it is damaged, or was made from another tile or otherwise, or the tile itself is gone or
+  /// of another size.
   static std::shared_ptr<const TileCells> open(const std::filesystem::path& file, const PriorStore& store, const TileEntry& tile, const CellGrid& grid,
                                                const PriorUnits& units);
   /// @throws IoError

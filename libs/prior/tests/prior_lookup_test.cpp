@@ -200,6 +200,17 @@ TEST(PriorLookup, ADamagedTileIsAnErrorThatNamesIt) {
   }
 }
 
+TEST(PriorLookup, ATileThatIsGoneOrCutIsAnErrorThoughItsFileIsThere) {
+  const TestFolder folder;
+  const PriorStore store(write_prior(folder / "prior", 100));
+  PriorLookup(store, {}).make_files(1);
+  const TileKey tile = store.index().entry(0).key, cell = PriorLookup(store, {}).grid().cell(tile, 0);
+  fs::resize_file(store.tile_file(tile), 1000);
+  EXPECT_THROW(PriorLookup(store, {}).patches(cell), FormatError);
+  fs::remove(store.tile_file(tile));
+  EXPECT_THROW(PriorLookup(store, {}).patches(cell), IoError);
+}
+
 TEST(PriorLookup, ProgramsThatStartAtOnceGetTheSame) {
   const TestFolder folder;
   const PriorStore store(write_prior(folder / "prior", 50));
