@@ -125,6 +125,41 @@ TEST(CityGml, HolesOldGmlSyntaxAndInnermostSrsNameAreRead) {
   EXPECT_EQ(models[0].srs_name, "EPSG:25833");
 }
 
+TEST(CityGml, OpeningsClosuresAndInstallationsKeepTheirClassInEveryVersion) {
+  const std::string window = "<bldg:opening><bldg:Window><bldg:lod3MultiSurface><gml:MultiSurface>" + member(square("", 2)) + "</gml:MultiSurface></bldg:lod3MultiSurface></bldg:Window></bldg:opening>";
+  const std::string filling = "<con:fillingSurface><con:WindowSurface><core:lod3MultiSurface><gml:MultiSurface>" + member(square("", 2)) +
+                              "</gml:MultiSurface></core:lod3MultiSurface></con:WindowSurface></con:fillingSurface>";
+  for (const std::string& opening : {window, filling}) {
+    const std::string wall = "<bldg:boundedBy><bldg:WallSurface><bldg:lod3MultiSurface><gml:MultiSurface>" + member(square("", 0, 3)) + "</gml:MultiSurface></bldg:lod3MultiSurface>" +
+                             opening + "</bldg:WallSurface></bldg:boundedBy>";
+    const auto areas = area_by_class(read(document(building(wall + surface("ClosureSurface", member(square("", 5, 2)), 3) + surface("GroundSurface", member(square("", 6, 4)), 3)))));
+    EXPECT_DOUBLE_EQ(areas.at(SurfaceClass::wall), 9);
+    EXPECT_DOUBLE_EQ(areas.at(SurfaceClass::opening), 1);
+    EXPECT_DOUBLE_EQ(areas.at(SurfaceClass::closure), 4);
+    EXPECT_DOUBLE_EQ(areas.at(SurfaceClass::ground_surface), 16);
+  }
+}
+
+TEST(CityGml, TriangulatedAndCompositeSurfacesOfSolidsAreTheirPolygons) {
+  const std::string triangles = "<gml:surfaceMember><gml:TriangulatedSurface><gml:trianglePatches>"
+                                "<gml:Triangle><gml:exterior><gml:LinearRing><gml:posList>0 0 0 1 0 0 1 1 0 0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Triangle>"
+                                "<gml:Triangle><gml:exterior><gml:LinearRing><gml:posList>0 0 0 1 1 0 0 1 0 0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Triangle>"
+                                "</gml:trianglePatches></gml:TriangulatedSurface></gml:surfaceMember>";
+  const std::string patches = "<gml:surfaceMember><gml:Surface><gml:patches><gml:PolygonPatch><gml:exterior><gml:LinearRing><gml:posList>0 0 4 2 0 4 2 2 4 0 2 4 0 0 4</gml:posList>"
+                              "</gml:LinearRing></gml:exterior></gml:PolygonPatch></gml:patches></gml:Surface></gml:surfaceMember>";
+  const auto models = read(document(building(solid("<gml:surfaceMember><gml:CompositeSurface>" + triangles + patches + "</gml:CompositeSurface></gml:surfaceMember>"))));
+  ASSERT_EQ(models[0].polygons.size(), 3u);
+  EXPECT_DOUBLE_EQ(area_by_class(models).at(SurfaceClass::unclassified), 5);
+}
+
+TEST(CityGml, SrsNameComesFromTheBuildingsEnvelopeOrTheDocuments) {
+  const std::string own = "<gml:boundedBy><gml:Envelope srsName='EPSG:25833'/></gml:boundedBy>";
+  const auto models = read(document(building(own + solid(member(square("", 0))), "a") + building(solid(member(square("", 0))), "b")));
+  ASSERT_EQ(models.size(), 2u);
+  EXPECT_EQ(models[0].srs_name, "EPSG:25833");
+  EXPECT_EQ(models[1].srs_name, "EPSG:25832");
+}
+
 TEST(CityGml, RoomsTerrainIntersectionsAndFootprintsAreLeftOut) {
   const auto models = read(document(building(
       "<bldg:lod0FootPrint><gml:MultiSurface>" + member(square("", 0)) + "</gml:MultiSurface></bldg:lod0FootPrint>"

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include <priormap/core/error.hpp>
 #include <priormap/sources/cityjson_reader.hpp>
 
@@ -49,6 +51,26 @@ TEST(CityJson, AmongLevelsOfOneMajorNumberTheFinestCounts) {
   const auto areas = area_by_class(best);
   EXPECT_NEAR(areas.at(SurfaceClass::ground_surface), 1.0, 1e-6);
   EXPECT_NEAR(areas.at(SurfaceClass::wall), 1.5, 1e-6);
+}
+
+TEST(CityJson, EveryVersionsWayToNameCrsAndLevelIsRead) {
+  const std::string objects = R"("CityObjects":{"b":{"type":"Building","geometry":[{"type":"Solid","lod":LOD,"boundaries":[[[[0,1,2,3]]]]}]}})";
+  const auto text = [&](const std::string& version, const std::string& crs, const std::string& lod, const std::string& transform) {
+    std::string with_lod = objects;
+    with_lod.replace(with_lod.find("LOD"), 3, lod);
+    return R"({"type":"CityJSON","version":")" + version + R"(","metadata":{"referenceSystem":")" + crs + "\"}" + transform + "," + with_lod + "," + vertices + "}";
+  };
+  const std::string transform = R"(,"transform":{"scale":[0.001,0.001,0.001],"translate":[0,0,0]})";
+  for (const auto& [version, crs, lod, scaled] : {std::tuple("1.0", "urn:ogc:def:crs:EPSG::7415", "2", ""), {"1.0", "urn:ogc:def:crs:EPSG::7415", "2.2", transform.c_str()},
+                                                  {"1.1", "https://www.opengis.net/def/crs/EPSG/0/7415", "\"2\"", transform.c_str()},
+                                                  {"2.0", "https://www.opengis.net/def/crs/EPSG/0/7415", "\"2.2\"", transform.c_str()}}) {
+    const auto models = read(text(version, crs, lod, scaled));
+    ASSERT_EQ(models.size(), 1u) << version;
+    EXPECT_EQ(models[0].srs_name, crs);
+    EXPECT_EQ(models[0].lod, 2) << version;
+    const double side = *scaled ? 1 : 1000;
+    EXPECT_NEAR(polygon_area(models[0].polygons.at(0).polygon), side * side, 1e-6) << version;
+  }
 }
 
 TEST(CityJson, TemplatesArePlacedAndTinReliefIsTerrain) {

@@ -22,3 +22,25 @@ fails_with 2 "--faces" citygml2prior good.gml -o out --faces some
 expect_absent out
 succeeds citygml2prior good.gml -o out --quiet
 fails_with 1 "--overwrite" citygml2prior good.gml -o out --quiet
+
+# Depth and counts are bounded, whatever the file says.
+limited() { (ulimit -v 3000000; "$@"); }
+{ printf '<CityModel>'; for i in $(seq 3000); do printf '<a>'; done; } >deep.gml
+fails_with 1 "nested deeper than 256" limited citygml2prior deep.gml -o other
+head -c 200000 /dev/zero | tr '\0' '[' >deep.json
+fails_with 1 "nested deeper than 64" limited citygml2prior deep.json -o other
+head -c 100 "$PRIORMAP_SOURCE/tests/fuzz/cityjson/corpus/solid.json" >cut.json
+fails_with 1 "cut.json: is no whole JSON" limited citygml2prior cut.json -o other
+# Each level refers ten times to the next: a billion polygons, were they all brought in.
+{
+  echo "<CityModel><boundedBy><Envelope srsName='EPSG:25832'/></boundedBy><cityObjectMember><Building id='b'><lod2MultiSurface><MultiSurface>"
+  for level in $(seq 9); do
+    printf "<surfaceMember><CompositeSurface id='l%d'>" "$level"
+    for i in $(seq 10); do printf "<surfaceMember href='#l%d'/>" $((level + 1)); done
+    printf "</CompositeSurface></surfaceMember>"
+  done
+  echo "<surfaceMember><Polygon id='l10'><exterior><LinearRing><posList>690000 5340000 8 690010 5340000 8 690010 5340010 8 690000 5340000 8</posList></LinearRing></exterior></Polygon></surfaceMember>"
+  echo "</MultiSurface></lod2MultiSurface></Building></cityObjectMember></CityModel>"
+} >multiplied.gml
+succeeds limited citygml2prior multiplied.gml --quiet -o multiplied
+expect_in stdout "polygons                    1"

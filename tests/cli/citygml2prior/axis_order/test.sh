@@ -1,0 +1,38 @@
+# Where the CRS names latitude or northing first and srsName is a URN or URL, so do the coordinates; all ways to write one place give the same points.
+box() {   # SRS "A" "B" "C": a wall and a roof over three corners
+  echo "<CityModel><boundedBy><Envelope srsName='$1'/></boundedBy><cityObjectMember><Building id='b'><lod1MultiSurface>"
+  echo "<Polygon><exterior><LinearRing><posList>$2 10 $3 10 $4 10 $2 10</posList></LinearRing></exterior></Polygon>"
+  echo "<Polygon><exterior><LinearRing><posList>$2 0 $3 0 $3 10 $2 10 $2 0</posList></LinearRing></exterior></Polygon>"
+  echo "</lod1MultiSurface></Building></cityObjectMember></CityModel>"
+}
+points() {   # NAME: as a sorted cloud in EPSG:31468
+  succeeds citygml2prior "$1.gml" --quiet --crs EPSG:31468 -o "$1"
+  succeeds priorexport "$1" --sort -o "$1.xyz"
+}
+a="4468000 5334000" b="4468020 5334000" c="4468020 5334010"
+turned() { echo "${1#* } ${1% *}"; }
+box EPSG:31468 "$a" "$b" "$c" >plain.gml
+box urn:ogc:def:crs:EPSG::31468 "$(turned "$a")" "$(turned "$b")" "$(turned "$c")" >urn.gml
+box http://www.opengis.net/def/crs/EPSG/0/31468 "$(turned "$a")" "$(turned "$b")" "$(turned "$c")" >url.gml
+for name in plain urn url; do points $name; done
+for name in urn url; do cmp plain.xyz $name.xyz || die "$name gives other points"; done
+
+# Latitude first in a geographic CRS; on the inside of one polygon as well as on the envelope.
+box urn:ogc:def:crs:EPSG::4326 "48.1400 11.5700" "48.1400 11.5703" "48.1401 11.5703" >latitude.gml
+box EPSG:4326 "11.5700 48.1400" "11.5703 48.1400" "11.5703 48.1401" >longitude.gml
+sed "s/<Envelope srsName='[^']*'/<Envelope/; s/<Polygon>/<Polygon srsName='urn:ogc:def:crs:EPSG::4326'>/" latitude.gml >inside.gml
+for name in latitude longitude inside; do
+  succeeds citygml2prior $name.gml --quiet --crs EPSG:25832 -o $name
+  succeeds priorexport $name --sort -o $name.xyz
+done
+cmp latitude.xyz longitude.xyz || die "latitude and longitude are mixed up"
+cmp latitude.xyz inside.xyz || die "srsName of the polygons is not read"
+
+# A URN, and still the longitude first: in Bangkok no other order is possible.
+box urn:ogc:def:crs:EPSG::4326 "13.7500 100.5000" "13.7500 100.5003" "13.7501 100.5003" >bangkok.gml
+box urn:ogc:def:crs:EPSG::4326 "100.5000 13.7500" "100.5003 13.7500" "100.5003 13.7501" >careless.gml
+for name in bangkok careless; do
+  succeeds citygml2prior $name.gml --quiet -o $name
+  succeeds priorexport $name --sort -o $name.xyz
+done
+cmp bangkok.xyz careless.xyz || die "the only possible order is not taken"
