@@ -12,6 +12,12 @@ std::int64_t WallIndex::cell(double x, double y) {
 
 void WallIndex::add(const Polygon3& face, const Eigen::Vector3d& normal) {
   if (!is_steep(normal) || face.exterior.size() < 3) return;
+  Eigen::Vector2d low = face.exterior.front().head<2>(), high = low;
+  for (const Eigen::Vector3d& p : face.exterior) {
+    low = low.cwiseMin(p.head<2>());
+    high = high.cwiseMax(p.head<2>());
+  }
+  if ((high - low).norm() > longest_wall_m) return;
   if (!has_origin_) {
     origin_ = face.exterior.front().array().round();
     has_origin_ = true;
@@ -29,11 +35,6 @@ void WallIndex::add(const Polygon3& face, const Eigen::Vector3d& normal) {
   }
   wall.end = static_cast<std::uint32_t>(vertices_.size());
 
-  Eigen::Vector2d low = face.exterior.front().head<2>(), high = low;
-  for (const Eigen::Vector3d& p : face.exterior) {
-    low = low.cwiseMin(p.head<2>());
-    high = high.cwiseMax(p.head<2>());
-  }
   const auto number = static_cast<std::uint32_t>(walls_.size());
   for (double x = std::floor((low.x() - touching_m) / cell_m) * cell_m; x <= high.x() + touching_m; x += cell_m) {
     for (double y = std::floor((low.y() - touching_m) / cell_m) * cell_m; y <= high.y() + touching_m; y += cell_m) cells_[cell(x, y)].push_back(number);

@@ -29,6 +29,7 @@ class WallIndex {
   bool touches(const Wall& wall, const Eigen::Vector3f& normal, const Eigen::Vector3f& point) const;
 
   static constexpr double cell_m = 8;
+  static constexpr double longest_wall_m = 1000;   // a longer one is no building's, and would fill the cells
   bool has_origin_ = false;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   std::vector<Wall> walls_;
