@@ -101,9 +101,10 @@ OutlineReport build_outline_prior(OutlineInput input, const PriorOptions& prior_
   for (std::size_t i = 0; i < input.files.size(); ++i) sources.push_back(source_of(input, i, frames, prior_options, outline_options));
   PriorWriter writer(output, manifest_of(frames, prior_options, sources, generator), overwrite);
 
-  const std::vector<ProjectedFootprint> footprints = project_footprints(std::move(input.footprints), frames.prior_from_outlines, threads, diagnostics);
+  std::vector<ProjectedFootprint> footprints = project_footprints(std::move(input.footprints), frames.prior_from_outlines, threads, diagnostics);
   const PartAssignment parts = assign_parts(footprints);
   std::vector<Building> buildings = raise_buildings(footprints, parts, frames, outline_options, threads, diagnostics);
+  footprints = {};   // what follows needs the memory
   for (Building& building : buildings) building.feature.source = sources[building.file].id;
   for (std::size_t i = 0; i < sources.size(); ++i) sources[i].facts = facts_of(count(buildings, parts, static_cast<std::uint16_t>(i)), outline_options);
   const OutlineCounts counts = count(buildings, parts, std::nullopt);
