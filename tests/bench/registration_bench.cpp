@@ -72,7 +72,7 @@ void search_pose(benchmark::State& state) {
   const JointTarget target{&f.prior};
   JointRegistration registration;
   JointResult result;
-  for (auto _ : state) result = registration.search(scan, {&target, 1}, f.truth * street::pose(4, 3, 0.3, 0.175));
+  for (auto _ : state) result = registration.search(scan, {&target, 1}, f.truth * street::pose(4, 3, 0.3, 0.175)).front().match;
   state.counters["error_mm"] = 1000 * street::distance(result.T_map_scan, f.truth);
 }
 BENCHMARK(search_pose)->Unit(benchmark::kMillisecond);

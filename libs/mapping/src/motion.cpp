@@ -1,5 +1,11 @@
 #include <priormap/mapping/motion.hpp>
 
+#include <array>
+
+#include <priormap/registration/register_joint.hpp>
+#include <priormap/registration/scan_reducer.hpp>
+#include <priormap/registration/surfel_map.hpp>
+
 namespace priormap {
 
 Eigen::Isometry3d predict(const Eigen::Isometry3d& T_map_before_last, const Eigen::Isometry3d& T_map_last) {
@@ -9,6 +15,30 @@ Eigen::Isometry3d predict(const Eigen::Isometry3d& T_map_before_last, const Eige
   T.linear() = (before * turn * turn).normalized().toRotationMatrix();
   T.translation() = 2 * T_map_last.translation() - T_map_before_last.translation();
   return T;
+}
+
+Eigen::Isometry3d motion_at_start(const ScanSource& source, std::size_t first, std::size_t last) {
+  constexpr double surfel_m = 0.5;
+  PoseSearchOptions around_rest;
+  around_rest.radius_m = 4;   // 40 m/s at 10 Hz, 20 m/s at 5 Hz
+  around_rest.step_m = 0.5;
+  around_rest.yaw_rad = 0.1;
+  const Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();
+  if (last - first < 2) return rest;
+
+  ScanReducer reducer(surfel_m);
+  SurfelMapOptions fine;
+  fine.voxel_m = surfel_m;
+  SurfelMap map(fine);
+  JointRegistration registration;
+  const std::array targets = {JointTarget{&map, 0.02, 1.0, rest}};
+  map.insert(reducer.reduce(source.read(first).points), rest);
+  const SurfelCloud second = reducer.reduce(source.read(first + 1).points);
+  const Eigen::Isometry3d T_first_second = registration.search(second, targets, rest, around_rest).front().match.T_map_scan;
+  if (last - first < 3) return T_first_second;
+  map.insert(second, T_first_second);
+  const SurfelCloud third = reducer.reduce(source.read(first + 2).points);
+  return T_first_second.inverse() * registration.align(third, targets, T_first_second * T_first_second).T_map_scan;
 }
 
 }  // namespace priormap

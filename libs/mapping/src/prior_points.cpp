@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include <priormap/core/error.hpp>
@@ -46,14 +47,16 @@ std::optional<Crs> resolve_crs(const std::optional<Crs>& declared, const PriorOp
   return crs;
 }
 
+/// A PRIOR directory by its lookup: the cells of that are the tiles here.
 class StoredPrior : public PriorPoints {
  public:
-  StoredPrior(const fs::path& directory, const PriorOptions& options) : store_(directory), grid_(store_.manifest().tile_size) {
+  StoredPrior(const fs::path& directory, const PriorOptions& options) : store_(directory), grid_(CellGrid(store_.manifest().tile_size).as_tiles()) {
     if (!options.origin.empty()) throw UsageError("--prior-origin belongs to a prior that is a single cloud, not to the directory " + directory.string());
     std::optional<Crs> declared;
     if (!store_.manifest().crs.empty()) declared = Crs::parse(store_.manifest().crs);
     crs_ = resolve_crs(declared, options, directory);
     if (store_.tiles().empty()) throw FormatError(directory, "the prior holds no points");
+    lookup_.emplace(store_, units());
     identity_ = {directory.filename().empty() ? directory.parent_path().filename().string() : directory.filename().string(), sha256_file(directory / "prior.json"),
                  store_.manifest().num_points, {}};
     for (const auto& source : store_.manifest().sources)
@@ -62,19 +65,16 @@ class StoredPrior : public PriorPoints {
 
   const std::optional<Crs>& crs() const override { return crs_; }
   const TileGrid& grid() const override { return grid_; }
-  std::vector<TileKey> tiles() const override {
-    std::vector<TileKey> keys;
-    for (const auto& tile : store_.tiles()) keys.push_back(tile.key);
-    return keys;
-  }
-  std::vector<TileKey> tiles_within(const Bounds2& bounds) const override { return store_.tiles_within(bounds); }
-  PointCloud load(TileKey key) const override { return store_.load(key).points; }
+  std::vector<TileKey> tiles_within(const Bounds2& bounds) const override { return lookup_->cells_within(bounds); }
+  PointCloud load(TileKey key) const override { return lookup_->points(key); }
+  PatchCloud patches(TileKey key) const override { return lookup_->patches(key); }
   const PriorIdentity& identity() const override { return identity_; }
 
  private:
   PriorStore store_;
   TileGrid grid_;
   std::optional<Crs> crs_;
+  std::optional<PriorLookup> lookup_;
   PriorIdentity identity_;
 };
 
@@ -98,11 +98,6 @@ class CloudPrior : public PriorPoints {
 
   const std::optional<Crs>& crs() const override { return crs_; }
   const TileGrid& grid() const override { return grid_; }
-  std::vector<TileKey> tiles() const override {
-    std::vector<TileKey> keys;
-    for (const auto& [key, points] : tiles_) keys.push_back(key);
-    return keys;
-  }
   std::vector<TileKey> tiles_within(const Bounds2& b) const override {
     std::vector<TileKey> keys;
     const TileKey low = grid_.key(b.min_x, b.min_y), high = grid_.key(b.max_x, b.max_y);
@@ -114,7 +109,7 @@ class CloudPrior : public PriorPoints {
   const PriorIdentity& identity() const override { return identity_; }
 
  private:
-  static constexpr double tile_size = 100;
+  static constexpr double tile_size = 50;
 
   void sort_into_tiles(const PointCloud& cloud) {
     std::map<TileKey, std::vector<std::uint32_t>> members;
@@ -137,6 +132,22 @@ class CloudPrior : public PriorPoints {
 };
 
 }  // namespace
+
+double distance(const Bounds2& b, double x, double y) {
+  return std::hypot(std::max({b.min_x - x, 0.0, x - b.max_x}), std::max({b.min_y - y, 0.0, y - b.max_y}));
+}
+
+/// By growing squares: a prior may have millions of tiles.
+double distance_to_prior_m(const PriorPoints& points, const Eigen::Vector3d& projected) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  for (double r = 100; r < 5e7; r *= 2) {
+    double nearest = none;
+    for (const TileKey key : points.tiles_within({projected.x() - r, projected.y() - r, projected.x() + r, projected.y() + r}))
+      nearest = std::min(nearest, distance(points.grid().bounds(key), projected.x(), projected.y()));
+    if (nearest <= r) return nearest * points.units().horizontal_m;
+  }
+  return none;
+}
 
 std::unique_ptr<PriorPoints> open_prior(const fs::path& path, const PriorOptions& options) {
   if (!fs::exists(path)) throw IoError(path, "no such prior (a directory with prior.json, or a .las, .pcd or .ply cloud)");

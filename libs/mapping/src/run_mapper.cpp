@@ -7,6 +7,7 @@
 #include <priormap/core/process.hpp>
 #include <priormap/core/version.hpp>
 #include <priormap/mapping/mapper.hpp>
+#include <priormap/mapping/motion.hpp>
 #include <priormap/mapping/read_ahead.hpp>
 
 #include "run_report.hpp"
@@ -50,8 +51,8 @@ Scan first_scan(const ScanSource& source, std::size_t index) {
   return scan;
 }
 
-/// The online pass: every scan once, in order.
-std::vector<MappedScan> map_scans(Mapper& mapper, const ScanSource& source, ScanRange range, const Events& events) {
+/// The online pass: every scan once, in order. @return seconds that each took
+std::vector<double> map_scans(Mapper& mapper, const ScanSource& source, ScanRange range, const Events& events) {
   ReadAhead scans(source, range.first, range.last);
   std::vector<double> step_s;
   Stopwatch watch;
@@ -63,9 +64,7 @@ std::vector<MappedScan> map_scans(Mapper& mapper, const ScanSource& source, Scan
     events.advance("mapping", static_cast<double>(step_s.size()) / static_cast<double>(range.last - range.first));
   }
   if (num_empty) events.warn(std::to_string(num_empty) + " scans hold no points; the motion was carried on there");
-  std::vector<MappedScan> mapped = mapper.finish();
-  for (std::size_t i = 0; i < mapped.size(); ++i) mapped[i].step_s = step_s[i];
-  return mapped;
+  return step_s;
 }
 
 void warn_of_bad_start(const MappedScan& first, const Events& events) {
@@ -136,14 +135,18 @@ RunSummary run_mapper(const RunOptions& options, int threads, Overwrite overwrit
   const ScanRange range = range_of(*source, options);
   const auto prior = options.prior.empty() ? nullptr : open_prior(options.prior, options.prior_options);
   const Start start = find_start(options.initial, prior.get(), first_scan(*source, range.first).points, method.prior_radius_m);
-  std::optional<PriorMap> prior_map;
-  if (prior) prior_map.emplace(*prior, start.frame, method.voxels, method.prior_radius_m);
-  Mapper mapper(method, prior_map ? &*prior_map : nullptr, start.T_map_sensor, threads);
+  std::optional<NearTiles> near;
+  if (prior) near.emplace(*prior, start.frame, method.prior_radius_m, threads);
+  Mapper mapper(method, near, {start.T_map_sensor, motion_at_start(*source, range.first, range.last)}, threads);
   times.start_s = watch.lap();
 
-  const std::vector<MappedScan> scans = map_scans(mapper, *source, range, events);
-  if (prior) warn_of_bad_start(scans.front(), events);
+  const std::vector<double> step_s = map_scans(mapper, *source, range, events);
   times.online_s = watch.lap();
+
+  std::vector<MappedScan> scans = mapper.finish([&](std::size_t index) { return source->read(index); });
+  for (std::size_t i = 0; i < scans.size(); ++i) scans[i].step_s = step_s[i];
+  if (prior) warn_of_bad_start(scans.front(), events);
+  times.estimate_s = watch.lap();
 
   RunSummary summary = summarise(scans);
   write_trajectories(output.temporary_path(), scans, start.frame);

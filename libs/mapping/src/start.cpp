@@ -7,7 +7,7 @@
 
 #include <priormap/core/error.hpp>
 #include <priormap/geodesy/transformer.hpp>
-#include <priormap/mapping/prior_map.hpp>
+#include <priormap/mapping/prior_window.hpp>
 
 namespace priormap {
 namespace {

@@ -15,15 +15,16 @@ double position_error(const MappedScan& scan, const Eigen::Isometry3d& truth) { 
 class Street : public testing::Test {
  protected:
   static constexpr int num_scans = 12;
+  static Scan read_again(std::size_t k) { return scan_from(length_m, truth(static_cast<int>(k)), k); }
   static Eigen::Isometry3d truth(int k) { return pose(1.2 * k, 0.5 * std::sin(0.1 * k), 1.7, 0.02 * k); }
   static constexpr double length_m = 30;
   const std::vector<Eigen::Vector3d> world_ = test::street(length_m, 1);
 };
 
 TEST_F(Street, OdometryFollowsTheMotion) {
-  Mapper mapper(MapperOptions::paper(), nullptr, truth(0), 1);
+  Mapper mapper(MapperOptions::paper(), std::nullopt, {truth(0)}, 1);
   for (int k = 0; k < num_scans; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
-  const auto scans = mapper.finish();
+  const auto scans = mapper.finish(read_again);
   ASSERT_EQ(scans.size(), static_cast<std::size_t>(num_scans));
   for (int k = 0; k < num_scans; ++k) EXPECT_LT(position_error(scans[static_cast<std::size_t>(k)], truth(k)), 0.15) << k;
   EXPECT_EQ(scans.back().verdict, Verdict::outside_prior);
@@ -31,36 +32,58 @@ TEST_F(Street, OdometryFollowsTheMotion) {
 
 TEST_F(Street, ThePriorCorrectsAWrongStartAndAnchorsTheDrive) {
   const test::TiledPoints tiles(world_, 50);
-  PriorMap prior(tiles, MapFrame::local(), {}, 150);
-  Mapper mapper(MapperOptions::paper(), &prior, pose(0.5, -0.4, 1.9, 0.03), 1);
+  const NearTiles prior(tiles, MapFrame::local(), 150);
+  Mapper mapper(MapperOptions::paper(), prior, {pose(0.5, -0.4, 1.9, 0.03)}, 1);
   for (int k = 0; k < num_scans; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
   for (int k = 0; k < num_scans; ++k) {
-    const MappedScan scan = mapper.finish()[static_cast<std::size_t>(k)];
+    const MappedScan scan = mapper.finish(read_again)[static_cast<std::size_t>(k)];
     EXPECT_LT(position_error(scan, truth(k)), 0.15) << k;
     EXPECT_EQ(scan.verdict, Verdict::anchored);
     EXPECT_TRUE(scan.prior->accepted);
   }
 }
 
+TEST_F(Street, TheDefaultPresetFindsItsWayWithinCentimetres) {
+  const test::TiledPoints tiles(world_, 50);
+  const NearTiles prior(tiles, MapFrame::local(), 150);
+  Mapper mapper(MapperOptions::preset("default"), prior, {pose(0.5, -0.4, 1.9, 0.03), pose(1.2, 0.05, 0, 0.02)}, 1);
+  for (int k = 0; k < num_scans; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+  const auto scans = mapper.finish(read_again);
+  for (int k = 0; k < num_scans; ++k) {
+    EXPECT_LT(position_error(scans[static_cast<std::size_t>(k)], truth(k)), 0.1) << k;
+    EXPECT_EQ(scans[static_cast<std::size_t>(k)].verdict, Verdict::anchored) << k;
+    EXPECT_GT(scans[static_cast<std::size_t>(k)].covariance(3, 3), 0) << k;
+  }
+}
+
+TEST_F(Street, TheDefaultPresetNeedsNoPriorForOdometry) {
+  Mapper mapper(MapperOptions::preset("default"), std::nullopt, {truth(0), truth(0).inverse() * truth(1)}, 1);
+  for (int k = 0; k < num_scans; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+  const auto scans = mapper.finish(read_again);
+  for (int k = 0; k < num_scans; ++k) EXPECT_LT(position_error(scans[static_cast<std::size_t>(k)], truth(k)), 0.05) << k;
+  EXPECT_EQ(scans.back().verdict, Verdict::outside_prior);
+  EXPECT_GT(scans.back().covariance(3, 3), scans.front().covariance(3, 3));
+}
+
 TEST_F(Street, SigmasGrowWithoutAPriorAndNotWithOne) {
   const test::TiledPoints tiles(world_, 50);
-  PriorMap prior(tiles, MapFrame::local(), {}, 150);
-  Mapper anchored(MapperOptions::paper(), &prior, truth(0), 1), drifting(MapperOptions::paper(), nullptr, truth(0), 1);
+  const NearTiles prior(tiles, MapFrame::local(), 150);
+  Mapper anchored(MapperOptions::paper(), prior, {truth(0)}, 1), drifting(MapperOptions::paper(), std::nullopt, {truth(0)}, 1);
   for (int k = 0; k < 12; ++k) {
     const Scan scan = scan_from(length_m, truth(k), static_cast<std::size_t>(k));
     anchored.step(scan);
     drifting.step(scan);
   }
-  const auto with = anchored.finish(), without = drifting.finish();
+  const auto with = anchored.finish(read_again), without = drifting.finish(read_again);
   EXPECT_GT(without[11].covariance(3, 3), 2 * without[3].covariance(3, 3));
   EXPECT_LT(with[11].covariance(3, 3), 2 * with[3].covariance(3, 3));
 }
 
 TEST_F(Street, AVehicleThatStandsRepeatsItsPose) {
-  Mapper mapper(MapperOptions::paper(), nullptr, truth(0), 1);
+  Mapper mapper(MapperOptions::paper(), std::nullopt, {truth(0)}, 1);
   for (int k = 0; k < 5; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
   for (int k = 5; k < 9; ++k) mapper.step(scan_from(length_m, truth(4), static_cast<std::size_t>(k)));
-  const auto scans = mapper.finish();
+  const auto scans = mapper.finish(read_again);
   for (std::size_t k = 5; k < 9; ++k) {
     EXPECT_TRUE(scans[k].standstill);
     EXPECT_TRUE(scans[k].T_map_sensor.isApprox(scans[4].T_map_sensor));
@@ -68,9 +91,9 @@ TEST_F(Street, AVehicleThatStandsRepeatsItsPose) {
 }
 
 TEST_F(Street, CreepingAddsUpUntilItIsSeen) {
-  Mapper mapper(MapperOptions::paper(), nullptr, pose(0, 0, 1.7, 0), 1);
+  Mapper mapper(MapperOptions::paper(), std::nullopt, {pose(0, 0, 1.7, 0)}, 1);
   for (int k = 0; k < 20; ++k) mapper.step(scan_from(length_m, pose(0.04 * k, 0, 1.7, 0), static_cast<std::size_t>(k)));
-  const auto scans = mapper.finish();
+  const auto scans = mapper.finish(read_again);
   EXPECT_TRUE(scans[1].standstill);
   EXPECT_NEAR(scans.back().T_map_sensor.translation().x(), 0.76, 0.15);
 }
@@ -79,22 +102,22 @@ TEST_F(Street, WhereThePriorEndsTheDriveGoesOn) {
   auto half = world_;
   std::erase_if(half, [](const Eigen::Vector3d& p) { return p.x() > -28; });
   const test::TiledPoints tiles(half, 50);
-  PriorMap prior(tiles, MapFrame::local(), {}, 150);
-  Mapper mapper(MapperOptions::paper(), &prior, truth(0), 1);
+  const NearTiles prior(tiles, MapFrame::local(), 150);
+  Mapper mapper(MapperOptions::paper(), prior, {truth(0)}, 1);
   for (int k = 0; k < num_scans; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
-  const auto scans = mapper.finish();
+  const auto scans = mapper.finish(read_again);
   EXPECT_EQ(scans.back().verdict, Verdict::outside_prior);
   EXPECT_LT(position_error(scans.back(), truth(num_scans - 1)), 1.0);  // the rim of the prior pulls: 6 m correspondences have no other partner
 }
 
 TEST_F(Street, AScanWithoutPointsCarriesTheMotionOn) {
-  Mapper mapper(MapperOptions::paper(), nullptr, truth(0), 1);
+  Mapper mapper(MapperOptions::paper(), std::nullopt, {truth(0)}, 1);
   for (int k = 0; k < 10; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
   Scan empty;
   empty.index = 10;
   EXPECT_EQ(mapper.step(empty).verdict, Verdict::lost);
   mapper.step(scan_from(length_m, truth(11), 11));
-  const auto scans = mapper.finish();
+  const auto scans = mapper.finish(read_again);
   EXPECT_LT(position_error(scans[10], truth(10)), 0.3);
   EXPECT_LT(position_error(scans[11], truth(11)), 0.2);
 }
@@ -103,10 +126,10 @@ TEST_F(Street, ThreadsDoNotChangeTheResult) {
   const test::TiledPoints tiles(world_, 50);
   std::vector<std::vector<MappedScan>> runs;
   for (const int threads : {1, 3}) {
-    PriorMap prior(tiles, MapFrame::local(), {}, 150);
-    Mapper mapper(MapperOptions::paper(), &prior, truth(0), threads);
+    const NearTiles prior(tiles, MapFrame::local(), 150);
+    Mapper mapper(MapperOptions::paper(), prior, {truth(0)}, threads);
     for (int k = 0; k < 6; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
-    runs.push_back(mapper.finish());
+    runs.push_back(mapper.finish(read_again));
   }
   for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(runs[0][k].T_map_sensor.matrix(), runs[1][k].T_map_sensor.matrix());
 }

@@ -63,7 +63,6 @@ class TiledPoints : public PriorPoints {
   }
   const std::optional<Crs>& crs() const override { return none_; }
   const TileGrid& grid() const override { return grid_; }
-  std::vector<TileKey> tiles() const override { return tiles_within({-1e9, -1e9, 1e9, 1e9}); }
   std::vector<TileKey> tiles_within(const Bounds2& b) const override {
     std::vector<TileKey> keys;
     for (const auto& [key, tile] : tiles_) {

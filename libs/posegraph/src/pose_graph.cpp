@@ -114,12 +114,54 @@ class BetweenCost final : public ceres::SizedCostFunction<6, 7, 7> {
   Matrix6d U_;
 };
 
+class PieceCost final : public ceres::SizedCostFunction<9, 7, 3> {
+ public:
+  explicit PieceCost(const PieceFactor& factor) : linearised_(factor.T_map_sensor) {
+    const Eigen::Matrix<double, 9, 9> H = factor.equations.H.cast<double>();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(H);
+    const Vector9d values = eigen.eigenvalues().cwiseMax(0.0);
+    const double least = 1e-6 * values.maxCoeff();  // below: noise of float32
+    const Vector9d root = (values.array() > least).select(values.cwiseSqrt(), 0.0);
+    const Vector9d inverse_root = (root.array() > 0).select(root.cwiseInverse(), 0.0);
+    U_ = root.asDiagonal() * eigen.eigenvectors().transpose();
+    u_ = inverse_root.asDiagonal() * (eigen.eigenvectors().transpose() * factor.equations.g.cast<double>());
+  }
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
+    const AbsoluteResidual e = absolute_residual(linearised_, pose_of(x[0]));
+    Vector9d z;
+    z << e.r, Eigen::Map<const Eigen::Vector3d>(x[1]);
+    Eigen::Map<Vector9d>{residuals} = U_ * z + u_;
+    if (jacobians && jacobians[0]) Eigen::Map<Eigen::Matrix<double, 9, 7, Eigen::RowMajor>>{jacobians[0]} = U_.leftCols<6>() * e.J * minus_jacobian(x[0]);
+    if (jacobians && jacobians[1]) Eigen::Map<Eigen::Matrix<double, 9, 3, Eigen::RowMajor>>{jacobians[1]} = U_.rightCols<3>();
+    return true;
+  }
+
+ private:
+  Eigen::Isometry3d linearised_;
+  Eigen::Matrix<double, 9, 9> U_;
+  Vector9d u_;
+};
+
+class OffsetCost final : public ceres::SizedCostFunction<3, 3> {
+ public:
+  explicit OffsetCost(const Eigen::Vector3d& sigma_m) : per_sigma_(sigma_m.cwiseInverse()) {}
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override {
+    Eigen::Map<Eigen::Vector3d>{residuals} = per_sigma_.cwiseProduct(Eigen::Map<const Eigen::Vector3d>(x[0]));
+    if (jacobians && jacobians[0]) Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>{jacobians[0]} = per_sigma_.asDiagonal();
+    return true;
+  }
+
+ private:
+  Eigen::Vector3d per_sigma_;
+};
+
 /// The Ceres problem over some of the poses. One thread and Eigen's own sparse solver: Ceres sums per thread and BLAS blocks per machine, and then the last bits vary.
 class PoseProblem {
  public:
   PoseProblem(std::span<const Eigen::Isometry3d> poses, const PoseGraphOptions& options)
       : options_(options), tukey_(options.absolute_width > 0 ? options.absolute_width : 1.0),
-        cauchy_(options.between_width > 0 ? options.between_width : 1.0), parameters_(poses.size()), problem_(not_owning()) {
+        cauchy_(options.between_width > 0 ? options.between_width : 1.0), piece_cauchy_(options.piece_width > 0 ? options.piece_width : 1.0),
+        parameters_(poses.size()), problem_(not_owning()) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       set_parameters(poses[i], parameters_[i].data());
       problem_.AddParameterBlock(parameters_[i].data(), 7, &manifold_);
@@ -134,6 +176,16 @@ class PoseProblem {
     problem_.AddResidualBlock(new BetweenCost(factor), options_.between_width > 0 ? &cauchy_ : nullptr, parameters_[a].data(),
                               parameters_[b].data());
   }
+
+  void add(std::span<const Piece> pieces) {
+    for (const Piece& piece : pieces) offsets_.push_back(piece.offset_m);
+    for (std::size_t p = 0; p < pieces.size(); ++p)
+      problem_.AddResidualBlock(new OffsetCost(pieces[p].sigma_m), options_.piece_width > 0 ? &piece_cauchy_ : nullptr, offsets_[p].data());
+  }
+  void add(const PieceFactor& factor) {
+    problem_.AddResidualBlock(new PieceCost(factor), nullptr, parameters_[factor.pose].data(), offsets_[factor.piece].data());
+  }
+  const Eigen::Vector3d& offset(std::size_t i) const { return offsets_[i]; }
 
   OptimizeSummary solve(bool sparse) {
     ceres::Solver::Options options;
@@ -162,9 +214,10 @@ class PoseProblem {
 
   PoseGraphOptions options_;
   ceres::TukeyLoss tukey_;
-  ceres::CauchyLoss cauchy_;
+  ceres::CauchyLoss cauchy_, piece_cauchy_;
   PoseManifold manifold_;
   std::vector<PoseParameters> parameters_;
+  std::vector<Eigen::Vector3d> offsets_;
   ceres::Problem problem_;
 };
 
@@ -218,6 +271,17 @@ void PoseGraph::add_between(PoseId a, PoseId b, const Eigen::Isometry3d& T_a_b, 
   between_.push_back({a, b, T_a_b, information});
 }
 
+PieceId PoseGraph::add_piece(const Eigen::Vector3d& sigma_m) {
+  if (!(sigma_m.minCoeff() > 0)) throw UsageError("pose graph: the sigma of a piece must be above 0");
+  pieces_.push_back({sigma_m});
+  return pieces_.size() - 1;
+}
+
+void PoseGraph::add_piece_factor(PoseId pose, PieceId piece, const Eigen::Isometry3d& T_map_sensor, const PieceEquations& equations) {
+  if (pose >= size() || piece >= pieces_.size()) throw UsageError("pose graph: a factor on a pose or piece that does not exist");
+  piece_factors_.push_back({pose, piece, T_map_sensor, equations});
+}
+
 OptimizeSummary PoseGraph::optimize_last(std::size_t window) {
   const std::size_t begin = size() - std::min(window, size());
   std::size_t oldest = begin;
@@ -238,16 +302,20 @@ OptimizeSummary PoseGraph::optimize_last(std::size_t window) {
 OptimizeSummary PoseGraph::optimize() {
   std::vector<char> anchored(size());
   for (std::size_t i = 0; i < size(); ++i) anchored[i] = !factors_of_[i].absolute.empty();
+  for (const auto& factor : piece_factors_) anchored[factor.pose] = 1;
   const std::vector<char> held = held_poses(anchored, between_);
 
   PoseProblem problem(poses_, options_);
+  problem.add(pieces_);
   for (std::size_t i = 0; i < size(); ++i)
     if (held[i]) problem.hold(i);
   for (const auto& factor : absolute_) problem.add(factor, factor.id);
   for (const auto& factor : between_) problem.add(factor, factor.a, factor.b);
+  for (const auto& factor : piece_factors_) problem.add(factor);
   const OptimizeSummary summary = problem.solve(true);
   for (std::size_t i = 0; i < size(); ++i)
     if (!held[i]) poses_[i] = problem.pose(i);
+  for (std::size_t p = 0; p < pieces_.size(); ++p) pieces_[p].offset_m = problem.offset(p);
   return summary;
 }
 
@@ -271,17 +339,30 @@ std::vector<double> PoseGraph::between_weights() const {
   return weights;
 }
 
-std::vector<Matrix6d> PoseGraph::marginal_covariances() const {
+std::vector<double> PoseGraph::piece_weights() const {
+  std::vector<double> weights;
+  weights.reserve(pieces_.size());
+  for (const Piece& piece : pieces_) weights.push_back(cauchy_weight(piece.offset_m.cwiseQuotient(piece.sigma_m).squaredNorm(), options_.piece_width));
+  return weights;
+}
+
+Marginals PoseGraph::marginals() const {
   const std::vector<double> w_absolute = absolute_weights(), w_between = between_weights();
   std::vector<char> anchored(size(), 0);
   for (std::size_t f = 0; f < absolute_.size(); ++f)
     if (w_absolute[f] > 0) anchored[absolute_[f].id] = 1;
+  for (const auto& factor : piece_factors_) anchored[factor.pose] = 1;
   const std::vector<char> held = held_poses(anchored, between_);
 
   std::vector<Eigen::Index> row_of(size(), -1);
   Eigen::Index rows = 0;
   for (std::size_t i = 0; i < size(); ++i)
     if (!held[i]) row_of[i] = std::exchange(rows, rows + 6);
+
+  // Offsets follow the poses, three rows each and three of padding: the inverse is taken by blocks of six.
+  const Eigen::Index pose_rows = rows;
+  const auto row_of_piece = [&](std::size_t p) { return pose_rows + Eigen::Index(6 * p); };
+  rows += Eigen::Index(6 * pieces_.size());
 
   std::vector<Eigen::Triplet<double>> entries;
   const auto add_block = [&](std::size_t i, std::size_t j, const Matrix6d& block) {
@@ -305,15 +386,33 @@ std::vector<Matrix6d> PoseGraph::marginal_covariances() const {
     add_block(factor.a, factor.b, e.J_a.transpose() * information * e.J_b);
     add_block(factor.b, factor.a, e.J_b.transpose() * information * e.J_a);
   }
+  const std::vector<double> w_piece = piece_weights();
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    for (int i = 0; i < 3; ++i) {
+      entries.emplace_back(row_of_piece(p) + i, row_of_piece(p) + i, w_piece[p] / (pieces_[p].sigma_m[i] * pieces_[p].sigma_m[i]));
+      entries.emplace_back(row_of_piece(p) + 3 + i, row_of_piece(p) + 3 + i, 1.0);
+    }
+  }
+  for (const PieceFactor& factor : piece_factors_) {
+    const Matrix6d J = absolute_residual(factor.T_map_sensor, poses_[factor.pose]).J;
+    const Eigen::Matrix<double, 9, 9> H = factor.equations.H.cast<double>();
+    add_block(factor.pose, factor.pose, J.transpose() * H.topLeftCorner<6, 6>() * J);
+    const Eigen::Matrix<double, 3, 6> across = H.bottomLeftCorner<3, 6>() * J;
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 6 && row_of[factor.pose] >= 0; ++c) entries.emplace_back(row_of_piece(factor.piece) + r, row_of[factor.pose] + c, across(r, c));
+      for (int c = 0; c <= r; ++c) entries.emplace_back(row_of_piece(factor.piece) + r, row_of_piece(factor.piece) + c, H(6 + r, 6 + c));
+    }
+  }
   Eigen::SparseMatrix<double> lower(rows, rows);
   lower.setFromTriplets(entries.begin(), entries.end());
 
-  std::vector<Matrix6d> covariances(size(), Matrix6d::Zero());
-  if (rows == 0) return covariances;
+  Marginals marginals{std::vector<Matrix6d>(size(), Matrix6d::Zero()), {}};
+  if (rows == 0) return marginals;
   const std::vector<Matrix6d> blocks = diagonal_blocks_of_inverse(lower);
   for (std::size_t i = 0; i < size(); ++i)
-    if (row_of[i] >= 0) covariances[i] = blocks[std::size_t(row_of[i]) / 6];
-  return covariances;
+    if (row_of[i] >= 0) marginals.poses[i] = blocks[std::size_t(row_of[i]) / 6];
+  for (std::size_t p = 0; p < pieces_.size(); ++p) marginals.pieces.push_back(blocks[std::size_t(row_of_piece(p)) / 6].topLeftCorner<3, 3>());
+  return marginals;
 }
 
 }  // namespace priormap

@@ -35,6 +35,14 @@ struct SourceColumns {
     }
   }
 
+  /// Variance of the points of surfel `i` along a direction in sensor axes.
+  double spread(std::size_t i, const Eigen::Vector3d& direction) const {
+    const auto c = [&](std::size_t k) { return double(columns[3 + k][i]); };
+    Eigen::Matrix3d covariance;
+    covariance << c(0), c(1), c(2), c(1), c(3), c(4), c(2), c(4), c(5);
+    return std::max(0.0, direction.dot(covariance * direction));
+  }
+
   kernels::Source view() const {
     const auto& c = columns;
     return {count, c[0].size(), c[0].data(), c[1].data(), c[2].data(), {c[3].data(), c[4].data(), c[5].data(), c[6].data(), c[7].data(), c[8].data()},
@@ -84,7 +92,7 @@ class TargetState {
   void begin(const JointTarget& target, std::size_t count, std::size_t padded, const Eigen::Isometry3d& guess) {
     target_ = target;
     view_.emplace(*target.map);
-    anchor_ = view_->anchor_voxel(guess.translation());
+    anchor_ = view_->anchor_voxel(target.T_target_map * guess.translation());
     count_ = count;
     for (auto& column : columns_) column.assign(padded, 0.0f);
     std::fill(columns_[variance].begin(), columns_[variance].end(), 1.0f);
@@ -93,8 +101,9 @@ class TargetState {
     for (auto* squares : {&squared_, &second_squared_}) squares->resize(count);
   }
 
-  Linearization linearize(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T, const JointOptions& options,
-                          double least_scale) {
+  Linearization linearize(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T_map_scan,
+                          const JointOptions& options, double least_scale) {
+    const Eigen::Isometry3d T = target_.T_target_map * T_map_scan;
     const kernels::Pose pose = kernel_pose(T, view_->corner(anchor_));
     table.transform(pose, source, data(x), data(y), data(z));
     search(table, options);
@@ -112,9 +121,24 @@ class TargetState {
     return out;
   }
 
+  std::vector<PlaneMatch> plane_matches(const SourceColumns& source, const Eigen::Matrix3d& R_map_scan) const {
+    std::vector<PlaneMatch> matches;
+    const Eigen::Matrix3d R = target_.T_target_map.linear() * R_map_scan;
+    const Eigen::Vector3d corner = view_->corner(anchor_);
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (columns_[isotropic][i] != 0 || columns_[directed][i] == 0) continue;
+      const auto at = [&](Column c) { return Eigen::Vector3d(columns_[c][i], columns_[std::size_t(c) + 1][i], columns_[std::size_t(c) + 2][i]); };
+      PlaneMatch match{corner + at(x), at(normal_x), at(normal_x).dot(at(x) - at(mean_x)), 0};
+      match.scan_variance_m2 = double(source.columns[9][i]) + source.spread(i, R.transpose() * match.normal);
+      matches.push_back(match);
+    }
+    return matches;
+  }
+
   /// Sum over the surfels that have a match: a little for one that fits, much off for one that does not. Where a scan meets the trace of another, as it does
   /// where it stood still, more find a match; that alone must not win.
-  double score(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T, const JointOptions& options) {
+  double score(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) {
+    const Eigen::Isometry3d T = target_.T_target_map * T_map_scan;
     const kernels::Pose pose = kernel_pose(T, view_->corner(anchor_));
     table.transform(pose, source, data(x), data(y), data(z));
     std::fill(gap2_.begin(), gap2_.end(), -1.0f);
@@ -228,6 +252,7 @@ struct JointRegistration::Workspace {
   const kernels::Table* table;
   SourceColumns source;
   std::vector<TargetState> targets;
+  Eigen::Matrix3d R_map_scan = Eigen::Matrix3d::Identity();  // at which the targets were linearised last
 
   void prepare(const SurfelCloud& scan, std::span<const JointTarget> wanted, const Eigen::Isometry3d& guess, const JointOptions& options,
                std::size_t stride) {
@@ -238,7 +263,7 @@ struct JointRegistration::Workspace {
 };
 
 JointRegistration::JointRegistration(const JointOptions& options, InstructionSet set)
-    : options_(options), workspace_(std::make_unique<Workspace>(Workspace{&kernels_for(set), {}, {}})) {
+    : options_(options), workspace_(std::make_unique<Workspace>(Workspace{&kernels_for(set), {}, {}, Eigen::Matrix3d::Identity()})) {
   if (!(options.point_sigma_m > 0) || !(options.kernel_width > 0) || !(options.min_scale > 0))
     throw UsageError("registration: point sigma, kernel width and scale must be above 0");
 }
@@ -260,6 +285,7 @@ JointResult JointRegistration::align(const SurfelCloud& scan, std::span<const Jo
     Matrix6d H = Matrix6d::Zero();
     Vector6d g = Vector6d::Zero();
     const double least_scale = std::max(options_.min_scale, options_.start_scale * std::pow(0.5, result.iterations));
+    w.R_map_scan = result.T_map_scan.linear();
     for (std::size_t t = 0; t < targets.size(); ++t) {
       parts[t] = w.targets[t].linearize(*w.table, source, result.T_map_scan, options_, least_scale);
       H += parts[t].H;
@@ -280,24 +306,45 @@ JointResult JointRegistration::align(const SurfelCloud& scan, std::span<const Jo
   return result;
 }
 
+std::vector<PlaneMatch> JointRegistration::plane_matches(std::size_t t) const {
+  return workspace_->targets.at(t).plane_matches(workspace_->source, workspace_->R_map_scan);
+}
+
 double JointRegistration::score(const Eigen::Isometry3d& T_map_scan) {
   double sum = 0;
   for (TargetState& target : workspace_->targets) sum += target.score(*workspace_->table, workspace_->source.view(), T_map_scan, options_);
   return sum;
 }
 
-JointResult JointRegistration::search(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess,
-                                      const PoseSearchOptions& search) {
-  std::vector<JointTarget> blurred(targets.begin(), targets.end());
-  for (JointTarget& target : blurred) target.sigma_m = std::hypot(target.sigma_m, search.sigma_m);
-  const std::size_t stride = std::max<std::size_t>(1, scan.size() / std::size_t(search.surfels));
+namespace {
 
+std::vector<JointTarget> blurred(std::span<const JointTarget> targets, double sigma_m) {
+  std::vector<JointTarget> wider(targets.begin(), targets.end());
+  for (JointTarget& target : wider) target.sigma_m = std::hypot(target.sigma_m, sigma_m);
+  return wider;
+}
+
+bool same_place(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  constexpr double near_m = 0.3, near_rad = 0.01;
+  const Vector6d apart = local_coordinates(a, b);
+  return apart.tail<3>().norm() < near_m && apart.head<3>().norm() < near_rad;
+}
+
+}  // namespace
+
+double JointRegistration::score(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan, double sigma_m) {
+  workspace_->prepare(scan, blurred(targets, sigma_m), T_map_scan, options_, 1);
+  return score(T_map_scan);
+}
+
+std::vector<ScoredResult> JointRegistration::search(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess,
+                                                    const PoseSearchOptions& search) {
   struct Start {
     double score;
     Eigen::Isometry3d T;
   };
   std::vector<Start> starts;
-  workspace_->prepare(scan, blurred, guess, options_, stride);
+  workspace_->prepare(scan, blurred(targets, search.sigma_m), guess, options_, std::max<std::size_t>(1, scan.size() / std::size_t(search.surfels)));
   const int steps = int(search.radius_m / search.step_m), turns = int(search.yaw_rad / search.step_rad);
   for (int turn = -turns; turn <= turns; ++turn)
     for (int i = -steps; i <= steps; ++i)
@@ -310,12 +357,14 @@ JointResult JointRegistration::search(const SurfelCloud& scan, std::span<const J
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.score > b.score; });
   starts.resize(std::min(starts.size(), std::size_t(search.refined)));
 
-  std::vector<JointResult> found;
-  for (const Start& start : starts) found.push_back(align(scan, targets, start.T));
-  workspace_->prepare(scan, targets, guess, options_, 1);
-  std::vector<double> scores;
-  for (const JointResult& result : found) scores.push_back(score(result.T_map_scan));
-  return found[std::size_t(std::max_element(scores.begin(), scores.end()) - scores.begin())];
+  std::vector<ScoredResult> found;
+  for (const Start& start : starts) {
+    const JointResult match = align(scan, targets, start.T);
+    const bool known = std::any_of(found.begin(), found.end(), [&](const ScoredResult& other) { return same_place(other.match.T_map_scan, match.T_map_scan); });
+    if (!known) found.push_back({match, score(scan, targets, match.T_map_scan, 0)});
+  }
+  std::stable_sort(found.begin(), found.end(), [](const ScoredResult& a, const ScoredResult& b) { return a.score > b.score; });
+  return found;
 }
 
 }  // namespace priormap

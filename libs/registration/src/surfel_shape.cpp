@@ -31,4 +31,9 @@ SurfelShape shape_of_moments(const Surfel& surfel, float voxel_m) {
   return shape;
 }
 
+Eigen::Vector3f normal_of(const Surfel& surfel, double voxel_m) {
+  const SurfelShape shape = shape_of_moments(surfel, float(voxel_m));
+  return shape.isotropic == 0 && shape.directed > 0 ? shape.normal : Eigen::Vector3f::Zero();
+}
+
 }  // namespace priormap

@@ -39,7 +39,7 @@ TEST_F(JointRegistrationTest, FindsThePoseFromFiveMetresAndTenDegreesOff) {
   const JointTarget target{&prior};
   const SurfelCloud noisy = scan(0.02);
   for (const auto& off : {street::pose(4, 3, 0.3, 0.175), street::pose(-4.9, 1, -0.3, -0.175), street::pose(0, -5, 0, 0.175)}) {
-    const JointResult result = registration.search(noisy, {&target, 1}, truth * off);
+    const JointResult result = registration.search(noisy, {&target, 1}, truth * off).front().match;
     EXPECT_TRUE(result.converged);
     EXPECT_LT(street::distance(result.T_map_scan, truth), 0.01);
     EXPECT_LT(street::angle(result.T_map_scan, truth), 5e-4);

@@ -8,7 +8,7 @@ fails_with 1 "none.ply: the prior holds no points" mapper --scans drive --prior 
 fails_with 1 "drive/prior.ply: EPSG:4326 is no projected CRS" mapper --scans drive --prior drive/prior.ply --prior-crs EPSG:4326 $start -o out
 fails_with 1 "EPSG:999999" mapper --scans drive --prior drive/prior.ply --prior-crs EPSG:999999 $start -o out
 # Another place: it says how far.
-fails_with 1 "prior and scans are in different places: the initial pose is 4900 m from the nearest tile" \
+fails_with 1 "prior and scans are in different places: the initial pose is 4950 m from the nearest tile" \
   mapper --scans drive --prior drive/prior.ply --initial-pose 0,5000,0,0,0,0,1 -o out
 # Heights that do not go together.
 succeeds mapper --scans drive --prior drive/prior.ply --prior-crs EPSG:25832 --prior-origin 640000,5359000,490 \

@@ -7,6 +7,7 @@ namespace priormap {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Vector9d = Eigen::Matrix<double, 9, 1>;
 
 /// The matrix of `a x .`.
 inline Eigen::Matrix3d hat(const Eigen::Vector3d& a) {
@@ -54,6 +55,14 @@ inline Vector6d local_coordinates(const Eigen::Isometry3d& from, const Eigen::Is
   xi.head<3>() = log_so3(Eigen::Quaterniond(from.linear().transpose() * to.linear()));
   xi.tail<3>() = from.linear().transpose() * (to.translation() - from.translation());
   return xi;
+}
+
+/// How a tangent at T_a passes on to T_b = T_a * T_a_b that rides along: its argument is T_b_a, the inverse.
+inline Matrix6d adjoint(const Eigen::Isometry3d& T_b_a) {
+  Matrix6d A = Matrix6d::Zero();
+  A.topLeftCorner<3, 3>() = A.bottomRightCorner<3, 3>() = T_b_a.linear();
+  A.bottomLeftCorner<3, 3>() = hat(T_b_a.translation()) * T_b_a.linear();
+  return A;
 }
 
 }  // namespace priormap

@@ -1,46 +1,44 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include <priormap/mapping/mapped_scan.hpp>
 #include <priormap/mapping/mapper_options.hpp>
-#include <priormap/mapping/prior_map.hpp>
+#include <priormap/mapping/prior_window.hpp>
 #include <priormap/mapping/scan.hpp>
-#include <priormap/posegraph/pose_graph.hpp>
-#include <priormap/registration/voxel_hash_map.hpp>
 
 namespace priormap {
+
+/// Where the first scan was taken, roughly, and how far the sensor moves from one scan to the next there.
+struct FirstPose {
+  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();   ///< T_previous_sensor
+};
+
+/// Reads a scan of the recording again, by its index.
+using ReadScan = std::function<Scan(std::size_t)>;
 
 /// Maps a sequence of scans against a prior (Kulmer et al., OpenLiDARMap, VEHITS 2025): each scan is matched to the prior (absolute pose) and to a local
 /// map of the scans before it (relative pose); a pose graph joins the two.
 class Mapper {
  public:
-  /// @param prior  none: odometry; must outlive this
-  /// @param T_map_first  where the first scan was taken, roughly
-  Mapper(const MapperOptions& options, PriorMap* prior, const Eigen::Isometry3d& T_map_first, int threads);
+  /// @param prior  the prior's tiles in the frame `map`; none: odometry
+  Mapper(const MapperOptions& options, const std::optional<NearTiles>& prior, const FirstPose& first, int threads);
+  ~Mapper();
+  Mapper(Mapper&&) noexcept;
 
-  /// Places one scan. The scan must hold points.
+  /// Places one scan. @return where it was taken, as far as is known when it comes
   const MappedScan& step(const Scan& scan);
 
-  /// All scans so far, with covariances.
-  std::vector<MappedScan> finish() const;
+  /// All scans with their final poses and covariances. @param read_again  for comparing scans with the prior anew at better poses
+  std::vector<MappedScan> finish(const ReadScan& read_again);
 
  private:
-  bool stands_still(const RegistrationResult& to_local) const;
-  void repeat_last(MappedScan& mapped);
-  bool accepts(const RegistrationResult& match) const;
-  void place(MappedScan& mapped, const Eigen::Isometry3d& guess, const std::optional<RegistrationResult>& to_local,
-             const std::optional<RegistrationResult>& to_prior, std::size_t num_points);
-
-  MapperOptions options_;
-  PriorMap* prior_;
-  int threads_;
-  Eigen::Isometry3d T_map_last_, T_map_before_last_;
-  VoxelHashMap local_map_;
-  PoseGraph graph_;
-  std::vector<MappedScan> scans_;
-  std::vector<PoseId> pose_of_scan_;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 }  // namespace priormap

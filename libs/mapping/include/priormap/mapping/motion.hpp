@@ -1,10 +1,17 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <cstddef>
+
+#include <priormap/mapping/scan_source.hpp>
 
 namespace priormap {
 
 /// The pose after `last` if the motion from `before_last` goes on unchanged (the paper, section III-E): t + (t - t'), q' (q'^-1 q)^2, which is
 /// slerp(q', q, 2). Needs no stamps.
 Eigen::Isometry3d predict(const Eigen::Isometry3d& T_map_before_last, const Eigen::Isometry3d& T_map_last);
+
+/// T_previous_sensor when a recording of scans [first, last) begins, found without a guess: one that begins at speed, met with a motion of zero, loses its first steps,
+/// for the traces of the lasers on the ground fit best where nothing has moved. Identity for a recording of one scan.
+Eigen::Isometry3d motion_at_start(const ScanSource& source, std::size_t first, std::size_t last);
 
 }  // namespace priormap

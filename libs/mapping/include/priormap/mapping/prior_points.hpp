@@ -9,6 +9,8 @@
 #include <priormap/geodesy/crs.hpp>
 #include <priormap/geodesy/tile_grid.hpp>
 #include <priormap/pointcloud/point_cloud.hpp>
+#include <priormap/pointcloud/surface_patches.hpp>
+#include <priormap/prior/prior_lookup.hpp>
 #include <priormap/prior/prior_store.hpp>
 
 namespace priormap {
@@ -28,12 +30,20 @@ class PriorPoints {
   /// None: a local metric frame. Without a vertical part the heights are undeclared.
   virtual const std::optional<Crs>& crs() const = 0;
   virtual const TileGrid& grid() const = 0;
-  virtual std::vector<TileKey> tiles() const = 0;                                ///< sorted
-  virtual std::vector<TileKey> tiles_within(const Bounds2& bounds) const = 0;   ///< sorted
-  /// @throws IoError, FormatError naming the tile's file
+  virtual std::vector<TileKey> tiles_within(const Bounds2& bounds) const = 0;   ///< sorted; may be empty ones
+  /// Positions; other columns as they come. @throws IoError, FormatError naming the tile's file
   virtual PointCloud load(TileKey key) const = 0;
+  /// The same reduced to patches, which count in metres from their origin. @throws as above
+  virtual PatchCloud patches(TileKey key) const { return patches_of_cell(load(key), units()); }
+  PriorUnits units() const { return crs() ? PriorUnits{crs()->horizontal_unit_m(), crs()->vertical_unit_m()} : PriorUnits{}; }
   virtual const PriorIdentity& identity() const = 0;
 };
+
+/// Of a place from a rectangle; 0 inside.
+double distance(const Bounds2& bounds, double x, double y);
+
+/// Distance in metres from a place (in the prior's CRS) to the nearest tile; 0 inside one, infinity where there is none within 50,000 km.
+double distance_to_prior_m(const PriorPoints& points, const Eigen::Vector3d& projected);
 
 /// How the user describes a prior beyond its files.
 struct PriorOptions {

@@ -9,16 +9,19 @@
 namespace priormap {
 
 using PoseId = std::size_t;
+using PieceId = std::size_t;
 
 struct PoseGraphOptions {
   double absolute_width = 1.0;
   double between_width = 1.0;
+  double piece_width = 2.0;
   int max_iterations = 50;
 
   template <class Visitor>
   void describe(Visitor& visit) {
     visit("absolute-width", absolute_width, {"width of the Tukey kernel on absolute constraints, in standard deviations; 0: no kernel", "", 0, 1e9});
     visit("between-width", between_width, {"width of the Cauchy kernel on relative constraints, in standard deviations; 0: no kernel", "", 0, 1e9});
+    visit("piece-width", piece_width, {"width of the Cauchy kernel on the offsets of pieces of the prior, in standard deviations; 0: no kernel", "", 0, 1e9});
     visit("graph-iterations", max_iterations, {"most iterations of the pose graph", "", 1, 10000});
   }
 };
@@ -37,11 +40,38 @@ struct BetweenFactor {
   Matrix6d information;
 };
 
+/// Normal equations of a quadratic cost 1/2 z^T H z + g^T z in z = [tangent of the pose at the place of linearisation (retract), offset of a piece of the prior in map axes].
+/// float32: there is one for each scan and piece in its sight.
+struct PieceEquations {
+  Eigen::Matrix<float, 9, 9> H = Eigen::Matrix<float, 9, 9>::Zero();
+  Eigen::Matrix<float, 9, 1> g = Eigen::Matrix<float, 9, 1>::Zero();
+};
+
+/// What a scan taken at about `T_map_sensor` says about its pose and the offset of a piece.
+struct PieceFactor {
+  PoseId pose;
+  PieceId piece;
+  Eigen::Isometry3d T_map_sensor;
+  PieceEquations equations;
+};
+
+/// A piece of the prior that may lie off as a whole.
+struct Piece {
+  Eigen::Vector3d sigma_m;                               ///< a priori, of its offset in map axes
+  Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();    ///< estimated
+};
+
 struct OptimizeSummary {
   bool converged = false;
   int iterations = 0;
   double initial_cost = 0;
   double final_cost = 0;
+};
+
+/// Covariances of each pose (tangent as the information) and of the offset of each piece (map axes).
+struct Marginals {
+  std::vector<Matrix6d> poses;
+  std::vector<Eigen::Matrix3d> pieces;
 };
 
 /// Poses T_map_sensor tied by absolute and between factors. Residuals, in the tangent of `local_coordinates` and whitened by the
@@ -57,6 +87,9 @@ class PoseGraph {
   PoseId add_pose(const Eigen::Isometry3d& T_map_sensor);
   void add_absolute(PoseId id, const Eigen::Isometry3d& T_map_sensor, const Matrix6d& information);
   void add_between(PoseId a, PoseId b, const Eigen::Isometry3d& T_a_b, const Matrix6d& information);
+  /// Pieces are only estimated by `optimize`, their offsets under a Cauchy kernel.
+  PieceId add_piece(const Eigen::Vector3d& sigma_m);
+  void add_piece_factor(PoseId pose, PieceId piece, const Eigen::Isometry3d& T_map_sensor, const PieceEquations& equations);
 
   /// Frame by frame: optimises the last `window` poses over the factors that touch them, all earlier ones held.
   OptimizeSummary optimize_last(std::size_t window = 1);
@@ -68,14 +101,18 @@ class PoseGraph {
   void set_pose(PoseId id, const Eigen::Isometry3d& T_map_sensor) { poses_.at(id) = T_map_sensor; }
   std::span<const AbsoluteFactor> absolute_factors() const { return absolute_; }
   std::span<const BetweenFactor> between_factors() const { return between_; }
+  std::span<const PieceFactor> piece_factors() const { return piece_factors_; }
+  std::span<const Piece> pieces() const { return pieces_; }
 
   /// Weight in (0, 1] that the kernel gives each factor at the present poses (Tukey: 0 for an outlier).
   std::vector<double> absolute_weights() const;
   std::vector<double> between_weights() const;
-  /// Marginal covariance of each pose (the 6x6 diagonal blocks of the inverse of the weighted normal matrix at the present poses), same tangent as the
+  std::vector<double> piece_weights() const;
+  /// Marginal covariances (the 6x6 diagonal blocks of the inverse of the weighted normal matrix at the present poses), same tangent as the
   /// information; in time linear in the poses of a chain. The first pose of a part that no absolute factor of non-zero weight ties to the map is held and
   /// has zero covariance: the others of that part are uncertain relative to it. A direction that nothing constrains gets the variance 1e8.
-  std::vector<Matrix6d> marginal_covariances() const;
+  Marginals marginals() const;
+  std::vector<Matrix6d> marginal_covariances() const { return marginals().poses; }
 
  private:
   struct FactorsOfPose {
@@ -87,6 +124,8 @@ class PoseGraph {
   std::vector<Eigen::Isometry3d> poses_;
   std::vector<AbsoluteFactor> absolute_;
   std::vector<BetweenFactor> between_;
+  std::vector<Piece> pieces_;
+  std::vector<PieceFactor> piece_factors_;
 };
 
 }  // namespace priormap

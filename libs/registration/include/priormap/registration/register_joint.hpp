@@ -16,6 +16,7 @@ struct JointTarget {
   const SurfelMap* map = nullptr;
   double sigma_m = 0.02;   ///< added (in squares) to the sigma of each of its surfels
   double weight = 1.0;     ///< on its whole information: below 1 where the errors of neighbouring surfels hang together
+  Eigen::Isometry3d T_target_map = Eigen::Isometry3d::Identity();   ///< for a map kept in a frame of its own, such as that of the odometry
 };
 
 struct JointOptions {
@@ -71,12 +72,25 @@ struct TargetResult {
   double inlier_share() const { return num_correspondences == 0 ? 0.0 : double(num_inliers) / double(num_correspondences); }
 };
 
+/// A surfel of the scan and the plane of a map that it was compared with.
+struct PlaneMatch {
+  Eigen::Vector3d p_map;      ///< the surfel's mean, in the frame of the target
+  Eigen::Vector3d normal;     ///< of the plane
+  double residual_m = 0;      ///< of p_map from the plane
+  double scan_variance_m2 = 0;   ///< of the residual, by the scan: its point noise, and its own spread along the normal
+};
+
 struct JointResult {
   Eigen::Isometry3d T_map_scan = Eigen::Isometry3d::Identity();
   bool converged = false;
   int iterations = 0;
   Matrix6d information = Matrix6d::Zero();   ///< of all targets and the pose prior together
   std::vector<TargetResult> targets;         ///< in the order given
+};
+
+struct ScoredResult {
+  JointResult match;
+  double score = 0;
 };
 
 /// Registers scans against several maps at once: the normal equations of all targets add up to one 6x6 system (and a prior on the pose, if given), solved by Gauss-Newton.
@@ -96,9 +110,15 @@ class JointRegistration {
   JointResult align(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess,
                     const std::optional<PosePrior>& prior = std::nullopt);
 
-  /// The best registration from a grid of starts (correlative scan matching: Olson, ICRA 2009): starts are ranked by how many surfels find a map surfel that fits, the best are
-  /// registered with `align`, and the one that then fits best is returned. For the first pose and for finding back; thousands of starts take tenths of a second.
-  JointResult search(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess, const PoseSearchOptions& options = {});
+  /// Registrations from a grid of starts, best first (correlative scan matching: Olson, ICRA 2009): starts are ranked by how many surfels find a map surfel that fits, the
+  /// best are registered with `align`, those that end in the same place count once. For the first pose and for finding back; thousands of starts take tenths of a second.
+  std::vector<ScoredResult> search(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess, const PoseSearchOptions& options = {});
+
+  /// How well a scan fits at a pose: 0.15 for each surfel that does, down to -0.85 for one whose nearest plane is far off; none for one that the maps do not know.
+  double score(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan, double sigma_m);
+
+  /// Which planes of target `t` the last `align` compared with, at the pose it returned but for its last step.
+  std::vector<PlaneMatch> plane_matches(std::size_t t) const;
 
  private:
   struct Workspace;

@@ -14,6 +14,9 @@ struct Surfel {
 /// Moments of the union of the points of both.
 void merge(Surfel& into, const Surfel& from);
 
+/// Unit normal of the plane that the points of a surfel of a voxel lie in; zero when they make none.
+Eigen::Vector3f normal_of(const Surfel& surfel, double voxel_m);
+
 /// Surfels of one scan, in its frame, relative to a double origin (as PointCloud).
 struct SurfelCloud {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();

@@ -1,0 +1,27 @@
+#include "confidence.hpp"
+
+#include <Eigen/LU>
+
+namespace priormap {
+
+Matrix6d carried_covariance() {
+  Vector6d sigmas;
+  sigmas << Eigen::Vector3d::Constant(0.035), Eigen::Vector3d::Constant(0.5);
+  return sigmas.cwiseAbs2().asDiagonal();
+}
+
+Matrix6d start_information(const Eigen::Isometry3d& T_map_sensor) {
+  Vector6d sigmas;
+  sigmas << 0.02, 0.02, 0.2, 5, 5, 1;   // in map axes
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = T_map_sensor.linear().transpose();
+  return turn * sigmas.cwiseAbs2().cwiseInverse().asDiagonal() * turn.transpose();
+}
+
+Matrix6d covariance_of(const Matrix6d& information) {
+  constexpr double least = 1e-2;
+  const Matrix6d covariance = (information + least * Matrix6d::Identity()).inverse();
+  return 0.5 * (covariance + covariance.transpose());
+}
+
+}  // namespace priormap

@@ -1,0 +1,17 @@
+#pragma once
+#include <priormap/core/se3.hpp>
+
+namespace priormap {
+
+/// How sure things are that no matching tells. Tangent [rotation, translation] in sensor axes.
+
+/// A motion that is only the last one carried on: two degrees and half a metre.
+Matrix6d carried_covariance();
+
+/// The start that a user gives: well levelled, its height within a metre, its place within five metres and its direction within ten degrees.
+Matrix6d start_information(const Eigen::Isometry3d& T_map_sensor);
+
+/// Inverse of an information matrix. Directions that nothing constrains are as uncertain as can be, but finite.
+Matrix6d covariance_of(const Matrix6d& information);
+
+}  // namespace priormap

@@ -1,0 +1,140 @@
+#include "drive_estimate.hpp"
+
+#include <Eigen/LU>
+
+#include <priormap/registration/scan_reducer.hpp>
+
+#include "confidence.hpp"
+#include "prior_pieces.hpp"
+
+namespace priormap {
+namespace {
+
+struct Keyframe {
+  std::size_t record;
+  Matrix6d motion_covariance;   ///< from the keyframe before, tangent at this one
+};
+
+std::vector<Keyframe> keyframes_of(const std::vector<ScanRecord>& records, const EstimateOptions& options) {
+  std::vector<Keyframe> keyframes;
+  Matrix6d carried = Matrix6d::Zero();
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const OdometryStep& step = records[i].odometry;
+    if (i && !step.joined) carried += carried_covariance();
+    const bool far = keyframes.empty() || (step.T_odom_sensor.translation() - records[keyframes.back().record].odometry.T_odom_sensor.translation()).norm() >= options.keyframe_m;
+    if (!far && i + 1 < records.size()) continue;
+    keyframes.push_back({i, options.motion_scale * options.motion_scale * covariance_of(step.information) + carried});
+    carried.setZero();
+  }
+  return keyframes;
+}
+
+/// Compares scans with the prior where they are thought to have been taken.
+class PriorComparison {
+ public:
+  PriorComparison(const NearTiles& prior, const ReadScan& read, const JointMethodOptions& options)
+      : prior_(prior, SurfelMap(options.tracking.prior)), read_(read), reducer_(options.reduce_m), registration_(one_step(options.tracking.registration)) {}
+
+  std::vector<PlaneMatch> at(std::size_t scan, const Eigen::Isometry3d& T_map_sensor) {
+    const SurfelCloud surfels = reducer_.reduce(read_(scan).points);
+    const JointTarget target{&prior_.around(T_map_sensor.translation()), 0.0, 1.0};
+    registration_.align(surfels, {&target, 1}, T_map_sensor);
+    return registration_.plane_matches(0);
+  }
+
+ private:
+  static JointOptions one_step(JointOptions options) {
+    options.max_iterations = 1;
+    return options;
+  }
+  PriorWindow<SurfelMap> prior_;
+  const ReadScan& read_;
+  ScanReducer reducer_;
+  JointRegistration registration_;
+};
+
+/// The graph of a drive.
+class DriveGraph {
+ public:
+  DriveGraph(const std::vector<ScanRecord>& records, const EstimateOptions& options) : records_(records), options_(options), keyframes_(keyframes_of(records, options)) {
+    for (const Keyframe& key : keyframes_) poses_.push_back(records[key.record].T_map_online);
+    T_map_start_ = poses_.front();
+  }
+  std::size_t size() const { return keyframes_.size(); }
+  std::size_t scan(std::size_t k) const { return records_[keyframes_[k].record].index; }
+  const Eigen::Isometry3d& pose(std::size_t k) const { return poses_[k]; }
+
+  /// @return the marginals at the new poses
+  Marginals estimate(PiecesOfPrior& pieces, const PieceSigmas& sigmas, std::vector<double>& weights) {
+    PoseGraph graph(options_.graph);
+    for (std::size_t k = 0; k < size(); ++k) {
+      graph.add_pose(poses_[k]);
+      if (k > 0) graph.add_between(k - 1, k, T_odom(k - 1).inverse() * T_odom(k), symmetric(keyframes_[k].motion_covariance.inverse()));
+    }
+    if (pieces.size() > 0) graph.add_absolute(0, T_map_start_, symmetric(start_information(T_map_start_)));   // what no piece holds must not float, such as the height over walls alone
+    pieces.add_to(graph, sigmas);
+    graph.optimize();
+    for (std::size_t k = 0; k < size(); ++k) poses_[k] = graph.pose(k);
+    pieces.take_offsets(graph);
+    weights = graph.piece_weights();
+    return graph.marginals();
+  }
+
+  /// All scans: those between keyframes ride along, corrected little by little.
+  std::vector<EstimatedPose> all_poses(const std::vector<Matrix6d>& covariances) const {
+    std::vector<EstimatedPose> poses(records_.size());
+    for (std::size_t k = 0; k < size(); ++k) {
+      const std::size_t begin = keyframes_[k].record, next = std::min(k + 1, size() - 1);
+      const std::size_t end = k + 1 < size() ? keyframes_[k + 1].record : records_.size();
+      const Eigen::Isometry3d T_map_odom = poses_[k] * T_odom(k).inverse(), T_map_odom_next = poses_[next] * T_odom(next).inverse();
+      for (std::size_t i = begin; i < end; ++i) {
+        const OdometryStep& step = records_[i].odometry;
+        const double share = static_cast<double>(i - begin) / static_cast<double>(end - begin);
+        const Eigen::Isometry3d before = T_map_odom * step.T_odom_sensor, after = T_map_odom_next * step.T_odom_sensor;
+        poses[i].T_map_sensor = retract(before, share * local_coordinates(before, after));
+        const Matrix6d A = adjoint(step.T_odom_sensor.inverse() * T_odom(k));
+        poses[i].covariance = A * covariances[k] * A.transpose();
+        if (i != begin) poses[i].covariance += covariance_of(step.information);
+      }
+    }
+    return poses;
+  }
+
+ private:
+  static Matrix6d symmetric(const Matrix6d& m) { return 0.5 * (m + m.transpose()); }
+  const Eigen::Isometry3d& T_odom(std::size_t k) const { return records_[keyframes_[k].record].odometry.T_odom_sensor; }
+
+  const std::vector<ScanRecord>& records_;
+  const EstimateOptions& options_;
+  std::vector<Keyframe> keyframes_;
+  std::vector<Eigen::Isometry3d> poses_;
+  Eigen::Isometry3d T_map_start_;
+};
+
+}  // namespace
+
+std::vector<EstimatedPose> estimate_drive(const std::vector<ScanRecord>& records, const std::optional<NearTiles>& prior, const ReadScan& read_again,
+                                          const JointMethodOptions& options) {
+  const EstimateOptions& how = options.estimate;
+  DriveGraph graph(records, how);
+  PiecesOfPrior pieces(how.piece_m, how.range_m);
+  const PieceSigmas stated = {{how.wall_sigma_m, how.slope_sigma_m, how.ground_sigma_m, how.roof_sigma_m}};
+  PieceSigmas sigmas = stated;
+  Marginals marginals;
+  std::vector<double> weights;
+  for (int pass = 0; pass < (prior ? how.passes : 1); ++pass) {
+    if (prior) {
+      pieces.clear_matches();
+      PriorComparison comparison(*prior, read_again, options);
+      // Coarse to fine: until the offsets are known, what strays is not yet an outlier.
+      const double coarse = pass == 0 ? 3 : 1;
+      for (std::size_t k = 0; k < graph.size(); ++k)
+        pieces.add(k, graph.pose(k), comparison.at(graph.scan(k), graph.pose(k)), {how.surface_sigma_m, coarse * how.kernel_width});
+    }
+    marginals = graph.estimate(pieces, sigmas, weights);
+    if (pass + 1 < how.passes) sigmas = pieces.estimated_sigmas(stated, sigmas, marginals.pieces, weights);
+  }
+  return graph.all_poses(marginals.poses);
+}
+
+}  // namespace priormap

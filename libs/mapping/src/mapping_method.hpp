@@ -1,0 +1,41 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <priormap/core/se3.hpp>
+#include <priormap/mapping/mapped_scan.hpp>
+#include <priormap/mapping/mapper.hpp>
+#include <priormap/mapping/mapper_options.hpp>
+#include <priormap/mapping/prior_window.hpp>
+#include <priormap/mapping/scan.hpp>
+
+namespace priormap {
+
+/// A pose and how sure it is; tangent [rotation, translation] in sensor axes.
+struct EstimatedPose {
+  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Zero();
+};
+
+/// One way to map a recording: the published one, or the joint one.
+class MappingMethod {
+ public:
+  virtual ~MappingMethod() = default;
+  /// Places a scan when it comes: fills the online pose, the verdict and the figures of `mapped`.
+  virtual void place(const Scan& scan, MappedScan& mapped) = 0;
+  /// The poses of all scans from everything that is known at the end.
+  virtual std::vector<EstimatedPose> finish(const ReadScan& read_again) = 0;
+};
+
+std::unique_ptr<MappingMethod> make_paper_method(const PaperOptions& options, const std::optional<NearTiles>& prior, const FirstPose& first, int threads);
+std::unique_ptr<MappingMethod> make_joint_method(const JointMethodOptions& options, const std::optional<NearTiles>& prior, const FirstPose& first);
+
+/// Fewer of a scan's points with a neighbour in the prior than this share, and there is no prior to speak of.
+constexpr double outside_share = 0.05;
+/// Below this share the prior holds the pose by a corner of the scan only.
+constexpr double weak_share = 0.3;
+
+}  // namespace priormap

@@ -1,0 +1,92 @@
+#include "prior_pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace priormap {
+namespace {
+
+/// What lies flat above the sensor is no ground: roofs, whose heights in the prior are often guessed.
+PieceKind kind_of(const PlaneMatch& match, double sensor_z) {
+  const double up = std::abs(match.normal.z());
+  if (up < 0.3) return PieceKind::wall;
+  if (match.p_map.z() > sensor_z) return PieceKind::roof;
+  return up < 0.9 ? PieceKind::slope : PieceKind::ground;
+}
+
+PieceKey key_of(const PlaneMatch& match, double sensor_z, double piece_m) {
+  const auto cell = [&](double v) { return static_cast<int>(std::floor(v / piece_m)); };
+  return {cell(match.p_map.x()), cell(match.p_map.y()), kind_of(match, sensor_z)};
+}
+
+}  // namespace
+
+PieceEquations equations_of(const PlaneMatch& match, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, const PieceNoise& noise) {
+  const Eigen::Matrix3d R = T_map_sensor.linear();
+  const Eigen::Vector3d n_sensor = R.transpose() * match.normal;
+  const Eigen::Vector3d p_sensor = R.transpose() * (match.p_map - T_map_sensor.translation());
+  Vector9d J;  // the residual grows with the point along the normal and shrinks when the piece moves along it
+  J << p_sensor.cross(n_sensor), n_sensor, -match.normal;
+  const double variance = match.scan_variance_m2 + noise.surface_sigma_m * noise.surface_sigma_m;
+  const double left = match.residual_m - match.normal.dot(offset_m);
+  const double root = 1 / (1 + left * left / (variance * noise.kernel_width * noise.kernel_width));
+  const double weight = root * root / variance;
+  return {(weight * J * J.transpose()).cast<float>(), (weight * match.residual_m * J).cast<float>()};
+}
+
+void PiecesOfPrior::clear_matches() {
+  for (Piece& piece : pieces_) piece.times_seen = 0;
+  factors_.clear();
+}
+
+void PiecesOfPrior::add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches, const PieceNoise& noise) {
+  std::map<PieceId, PieceEquations> equations;
+  for (const PlaneMatch& match : matches) {
+    if ((match.p_map - T_map_sensor.translation()).squaredNorm() > range_m_ * range_m_) continue;
+    const auto [found, is_new] = ids_.try_emplace(key_of(match, T_map_sensor.translation().z(), piece_m_), pieces_.size());
+    if (is_new) pieces_.push_back({found->first.kind});
+    const PieceEquations one = equations_of(match, T_map_sensor, pieces_[found->second].offset_m, noise);
+    PieceEquations& sum = equations[found->second];
+    sum.H += one.H;
+    sum.g += one.g;
+  }
+  for (const auto& [id, sum] : equations) {
+    ++pieces_[id].times_seen;
+    factors_.push_back({k, id, T_map_sensor, sum});
+  }
+}
+
+void PiecesOfPrior::add_to(PoseGraph& graph, const PieceSigmas& sigmas) const {
+  for (const Piece& piece : pieces_) graph.add_piece(Eigen::Vector3d::Constant(sigmas[piece.kind]));
+  for (PieceFactor factor : factors_) {
+    const float share = 1.0f / static_cast<float>(pieces_[factor.piece].times_seen);
+    factor.equations.H *= share;
+    factor.equations.g *= share;
+    graph.add_piece_factor(factor.pose, factor.piece, factor.T_map_sensor, factor.equations);
+  }
+}
+
+void PiecesOfPrior::take_offsets(const PoseGraph& graph) {
+  for (PieceId p = 0; p < pieces_.size(); ++p) pieces_[p].offset_m = graph.pieces()[p].offset_m;
+}
+
+/// Variance components (Foerstner 1979): the squares of the offsets against what the data left free of them, with the weights of the graph's kernel. Few pieces hardly move what was
+/// taken for granted.
+PieceSigmas PiecesOfPrior::estimated_sigmas(const PieceSigmas& stated, const PieceSigmas& used, const std::vector<Eigen::Matrix3d>& covariances,
+                                            const std::vector<double>& weights) const {
+  constexpr double stated_counts = 10, least_m = 0.02, most_m = 3;
+  PieceSigmas estimated;
+  for (const PieceKind kind : {PieceKind::wall, PieceKind::slope, PieceKind::ground, PieceKind::roof}) {
+    double squares = stated_counts * stated[kind] * stated[kind], redundancy = stated_counts;
+    const double variance = used[kind] * used[kind];
+    for (PieceId p = 0; p < pieces_.size(); ++p) {
+      if (pieces_[p].kind != kind || pieces_[p].times_seen == 0) continue;
+      squares += weights[p] * pieces_[p].offset_m.squaredNorm();
+      redundancy += weights[p] * std::max(0.0, 3 - covariances[p].trace() / variance);
+    }
+    estimated[kind] = std::clamp(std::sqrt(squares / redundancy), least_m, most_m);
+  }
+  return estimated;
+}
+
+}  // namespace priormap

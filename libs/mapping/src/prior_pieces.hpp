@@ -1,0 +1,66 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <compare>
+#include <map>
+#include <vector>
+
+#include <priormap/posegraph/pose_graph.hpp>
+#include <priormap/registration/register_joint.hpp>
+
+namespace priormap {
+
+enum class PieceKind { wall, slope, ground, roof };
+
+/// One value for each kind.
+struct PieceSigmas {
+  std::array<double, 4> sigma_m;
+  double& operator[](PieceKind kind) { return sigma_m[static_cast<std::size_t>(kind)]; }
+  double operator[](PieceKind kind) const { return sigma_m[static_cast<std::size_t>(kind)]; }
+};
+
+/// A piece of the prior whose position errors hang together: the surfaces of one kind in one cell of a horizontal grid.
+struct PieceKey {
+  int x = 0, y = 0;
+  PieceKind kind = PieceKind::wall;
+  auto operator<=>(const PieceKey&) const = default;
+};
+
+/// How far a real surface strays from that of its piece of the prior, the piece's offset apart.
+struct PieceNoise {
+  double surface_sigma_m;
+  double kernel_width;   ///< Geman-McClure, in standard deviations
+};
+
+/// Normal equations of one comparison. @param offset_m  of the piece, as far as it is known: what strays from there is an outlier
+PieceEquations equations_of(const PlaneMatch& match, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, const PieceNoise& noise);
+
+/// The pieces of the prior along a drive, and what the scans say of them. A piece may lie off as a whole. Its errors are the same in all scans that see it: it
+/// counts once, however many there are.
+class PiecesOfPrior {
+ public:
+  PiecesOfPrior(double piece_m, double range_m) : piece_m_(piece_m), range_m_(range_m) {}
+
+  void clear_matches();
+  /// Takes the comparisons that a scan at `T_map_sensor`, pose `k` of the graph, gave.
+  void add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches, const PieceNoise& noise);
+  void add_to(PoseGraph& graph, const PieceSigmas& sigmas) const;
+  void take_offsets(const PoseGraph& graph);
+  /// What the offsets say about the sigmas of each kind. @param stated  beforehand, counted as ten pieces' worth; @param used  in the graph that gave offsets and covariances
+  PieceSigmas estimated_sigmas(const PieceSigmas& stated, const PieceSigmas& used, const std::vector<Eigen::Matrix3d>& covariances,
+                               const std::vector<double>& weights) const;
+  std::size_t size() const { return pieces_.size(); }
+
+ private:
+  struct Piece {
+    PieceKind kind;
+    Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
+    std::size_t times_seen = 0;
+  };
+  double piece_m_, range_m_;
+  std::map<PieceKey, PieceId> ids_;
+  std::vector<Piece> pieces_;
+  std::vector<PieceFactor> factors_;
+};
+
+}  // namespace priormap

@@ -1,0 +1,54 @@
+#pragma once
+#include <Eigen/Geometry>
+#include <optional>
+#include <vector>
+
+#include <priormap/mapping/mapped_scan.hpp>
+#include <priormap/mapping/mapper_options.hpp>
+#include <priormap/mapping/prior_window.hpp>
+#include <priormap/registration/register_joint.hpp>
+
+
+namespace priormap {
+
+/// What the prior says of a scan.
+struct PriorMatch {
+  MatchFigures figures;
+  double share = 0;                          ///< of the scan's surfels that the prior knows
+  Matrix6d information = Matrix6d::Zero();   ///< tangent in sensor axes
+};
+
+/// How `odom` lies in `map`, followed along the drive: each few metres a scan is matched to the prior and to where the odometry says it was, in one system
+/// (a Kalman filter whose measurement update is the registration). Errors of the prior hang together from scan to scan: a match, however many points it has, counts
+/// as no surer than `prior_floor_m`.
+class PriorTracker {
+ public:
+  /// @param scan_voxel_m  to which the scans are reduced
+  PriorTracker(const TrackingOptions& options, double scan_voxel_m, const std::optional<NearTiles>& prior, const Eigen::Isometry3d& T_map_first);
+  /// The prior's word is asked each `keyframe_m`. @return what it was
+  std::optional<PriorMatch> follow(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor);
+  Eigen::Isometry3d T_map_odom() const { return T_map_odom_; }
+
+ private:
+  struct Hypothesis {
+    Eigen::Isometry3d T_map_odom;
+    double score;
+  };
+  void compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const SurfelMap& map);
+
+  Matrix6d predicted_covariance(const Eigen::Isometry3d& T_odom_sensor) const;
+
+  TrackingOptions options_;
+  double scan_voxel_m_;
+  std::optional<PriorWindow<SurfelMap>> prior_;
+  JointRegistration registration_;
+  Eigen::Isometry3d T_map_odom_;
+  std::optional<Eigen::Isometry3d> T_odom_last_;   // where the prior was asked last
+  Matrix6d covariance_ = Matrix6d::Zero();         // of T_map_odom * T_odom_last, tangent in sensor axes
+  double prior_weight_ = 1;
+  std::vector<Hypothesis> hypotheses_;             // where the drive may have begun; the first is the one given
+  int num_heard_ = 0;
+  std::size_t num_surfels_heard_ = 0;
+};
+
+}  // namespace priormap

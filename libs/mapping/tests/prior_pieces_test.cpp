@@ -1,0 +1,88 @@
+#include <gtest/gtest.h>
+
+#include "prior_pieces.hpp"
+
+namespace priormap {
+namespace {
+
+Eigen::Isometry3d pose(double x, double y, double yaw) {
+  Eigen::Isometry3d T(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
+  T.translation() = Eigen::Vector3d(x, y, 1.7);
+  return T;
+}
+
+constexpr PieceNoise noise{0.1, 1e6};   // no kernel
+
+TEST(PriorPieces, TheEquationsAreTheDerivativeOfTheSquaredResidual) {
+  const Eigen::Isometry3d T = pose(3, 4, 0.7);
+  const Eigen::Vector3d p_sensor(8, -2, 1), normal = Eigen::Vector3d(1, 2, 0.3).normalized();
+  PlaneMatch match{T * p_sensor, normal, 0.2, 0.01};
+  const Eigen::Vector3d on_plane = match.p_map - match.residual_m * normal;
+  const auto cost = [&](const Vector9d& z) {
+    const double r = normal.dot(retract(T, z.head<6>()) * p_sensor - on_plane - z.tail<3>());
+    return 0.5 * r * r / (0.1 * 0.1 + 0.01);
+  };
+  const PieceEquations e = equations_of(match, T, Eigen::Vector3d::Zero(), noise);
+  constexpr double step = 1e-5;
+  for (int i = 0; i < 9; ++i) {
+    const Vector9d d = step * Vector9d::Unit(i);
+    EXPECT_NEAR(e.g[i], (cost(d) - cost(-d)) / (2 * step), 1e-4) << i;
+  }
+}
+
+TEST(PriorPieces, WhatStraysFromTheKnownOffsetIsAnOutlier) {
+  const Eigen::Isometry3d T = pose(0, 0, 0);
+  const PlaneMatch match{{10, 0, 2}, {1, 0, 0}, 1.0, 0};
+  const PieceNoise narrow{0.1, 3};
+  EXPECT_LT(equations_of(match, T, {0, 0, 0}, narrow).H(3, 3), 2);
+  EXPECT_NEAR(equations_of(match, T, {1, 0, 0}, narrow).H(3, 3), 100, 1e-3);
+}
+
+/// Walls across x, one a cell, each seen where it really is; the prior has them shifted.
+class ShiftedWalls : public testing::Test {
+ protected:
+  static constexpr double piece_m = 20;
+  PiecesOfPrior pieces_{piece_m, 70};
+  void see(PoseId k, double x, const std::vector<double>& shifts) {
+    std::vector<PlaneMatch> matches;
+    for (std::size_t w = 0; w < shifts.size(); ++w)
+      for (const auto& normal : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)})
+        for (const double up : {0.0, 2.0, 4.0}) matches.push_back({{x + 5, piece_m * static_cast<double>(w) - 45, up}, normal, normal.x() != 0 ? -shifts[w] : 0.0, 1e-4});
+    pieces_.add(k, pose(x, 0, 0), matches, noise);
+  }
+};
+
+TEST_F(ShiftedWalls, OneShiftedHouseDoesNotMoveTheVehicle) {
+  see(0, 0, {0, 0, 0, 3, 0});
+  PoseGraph graph(PoseGraphOptions{.absolute_width = 0, .between_width = 0});
+  graph.add_pose(pose(0, 0, 0));
+  graph.add_absolute(0, pose(0, 0, 0), 1e-2 * Matrix6d::Identity());
+  pieces_.add_to(graph, {{0.3, 0.3, 0.1, 1}});
+  graph.optimize();
+  EXPECT_LT(std::abs(graph.pose(0).translation().x()), 0.1);
+  EXPECT_NEAR(graph.pieces()[3].offset_m.x(), -3, 0.15);   // to be moved back
+  const Marginals marginals = graph.marginals();
+  EXPECT_LT(marginals.pieces[0](0, 0), 0.09);
+  EXPECT_NEAR(marginals.pieces[0](2, 2), 0.09, 1e-3);   // walls say nothing of height
+}
+
+TEST_F(ShiftedWalls, TheSigmaOfTheWallsIsEstimatedFromTheirOffsets) {
+  PoseGraph graph(PoseGraphOptions{.absolute_width = 0, .between_width = 0, .piece_width = 0});
+  for (PoseId k = 0; k < 60; ++k) {
+    const double x = 20.0 * static_cast<double>(k), s = k % 2 ? 1.0 : -1.0;
+    see(k, x, {s, -s, s, -s, 0});
+    graph.add_pose(pose(x, 0, 0));
+    graph.add_absolute(k, pose(x, 0, 0), 1e6 * Matrix6d::Identity());
+  }
+  const PieceSigmas stated = {{0.3, 0.3, 0.1, 1}};
+  PieceSigmas sigmas = stated;
+  pieces_.add_to(graph, sigmas);
+  graph.optimize();
+  pieces_.take_offsets(graph);
+  sigmas = pieces_.estimated_sigmas(stated, sigmas, graph.marginals().pieces, graph.piece_weights());
+  EXPECT_NEAR(sigmas[PieceKind::wall], std::sqrt(0.8 / 2), 0.1);   // of 1 m along x in four of five, none along y
+  EXPECT_NEAR(sigmas[PieceKind::ground], 0.1, 1e-9);               // nothing was seen
+}
+
+}  // namespace
+}  // namespace priormap
