@@ -18,11 +18,14 @@ struct Keyframe {
 std::vector<Keyframe> keyframes_of(const std::vector<ScanRecord>& records, const EstimateOptions& options) {
   std::vector<Keyframe> keyframes;
   Matrix6d carried = Matrix6d::Zero();
+  std::size_t last_joined = records.size() - 1;
+  while (last_joined > 0 && !records[last_joined].odometry.joined) --last_joined;
   for (std::size_t i = 0; i < records.size(); ++i) {
     const OdometryStep& step = records[i].odometry;
-    if (i && !step.joined) carried += carried_covariance();
+    if (i && !step.joined) continue;   // lost: what comes after is matched to the same local map
+    if (i && !step.figures.converged) carried += carried_covariance();
     const bool far = keyframes.empty() || (step.T_odom_sensor.translation() - records[keyframes.back().record].odometry.T_odom_sensor.translation()).norm() >= options.keyframe_m;
-    if (!far && i + 1 < records.size()) continue;
+    if (!far && i != last_joined) continue;
     keyframes.push_back({i, options.motion_scale * options.motion_scale * covariance_of(step.information) + carried});
     carried.setZero();
   }
@@ -94,7 +97,7 @@ class DriveGraph {
         poses[i].T_map_sensor = retract(before, share * local_coordinates(before, after));
         const Matrix6d A = adjoint(step.T_odom_sensor.inverse() * T_odom(k));
         poses[i].covariance = A * covariances[k] * A.transpose();
-        if (i != begin) poses[i].covariance += covariance_of(step.information);
+        if (i != begin) poses[i].covariance += step.joined ? covariance_of(step.information) : carried_covariance();
       }
     }
     return poses;

@@ -18,20 +18,20 @@ class JointMethod : public MappingMethod {
     const SurfelCloud surfels = reducer_.reduce(scan.points);
     const OdometryStep step = odometry_.step(surfels);
     if (!records_.empty()) mapped.local = step.figures;
-    if (const auto match = tracker_.follow(surfels, step.T_odom_sensor)) {
+    const bool lost = !records_.empty() && !step.joined;
+    if (const auto match = lost ? std::nullopt : tracker_.follow(surfels, step.T_odom_sensor)) {
       mapped.prior = match->figures;
       last_match_ = match;
     }
     mapped.T_map_online = tracker_.T_map_odom() * step.T_odom_sensor;
-    mapped.verdict = verdict_of(step);
+    mapped.verdict = lost ? Verdict::lost : verdict_by_prior();
     records_.push_back({scan.index, step, mapped.T_map_online});
   }
 
   std::vector<EstimatedPose> finish(const ReadScan& read_again) override { return estimate_drive(records_, prior_, read_again, options_); }
 
  private:
-  Verdict verdict_of(const OdometryStep& step) const {
-    if (!records_.empty() && !step.joined) return Verdict::lost;
+  Verdict verdict_by_prior() const {
     if (!last_match_ || last_match_->share < outside_share) return Verdict::outside_prior;
     if (!last_match_->figures.accepted) return Verdict::dead_reckoned;
     return last_match_->share < weak_share ? Verdict::weak : Verdict::anchored;

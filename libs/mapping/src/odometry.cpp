@@ -7,24 +7,79 @@
 
 namespace priormap {
 
+/// Ground fits ground anywhere: a scan of another street has more than half its planes fit. But never as they did in the scans before.
+bool UsualFit::admit(const TargetResult& match, bool after_loss) const {
+  constexpr int least = 5;
+  if (count_ < least) return true;
+  const double share = match.inlier_share() / share_, rmse = match.inlier_rmse_m / rmse_m_;
+  return after_loss ? share > 0.85 && rmse < 1.8 : share > 0.7 || rmse < 2;
+}
+
+void UsualFit::take(const MatchFigures& match) {
+  constexpr double share_of_new = 0.1;
+  const double share = static_cast<double>(match.num_inliers) / static_cast<double>(match.num_correspondences);
+  const double weight = count_++ ? share_of_new : 1;
+  share_ += weight * (share - share_);
+  rmse_m_ += weight * (match.inlier_rmse_m - rmse_m_);
+}
+
 Odometry::Odometry(const OdometryOptions& options, const Eigen::Isometry3d& first_motion)
     : options_(options), registration_(options.registration), local_map_(options.local_map), T_odom_before_last_(first_motion.inverse()),
       T_odom_last_(Eigen::Isometry3d::Identity()) {}
 
+/// The motion carried on; or without its turn, where the scan fits better so: a platform that rocks turns back as often as it turns on.
+Eigen::Isometry3d Odometry::better_guess(const SurfelCloud& scan) {
+  constexpr double rocking_rad = 0.01, blur_m = 0.3;
+  const Eigen::Isometry3d carried = predict(T_odom_before_last_, T_odom_last_);
+  const Eigen::AngleAxisd turn(T_odom_last_.linear().transpose() * carried.linear());
+  if (turn.angle() < rocking_rad) return carried;
+  const std::array targets = {JointTarget{&local_map_, options_.local_sigma_m, 1.0}};
+  Eigen::Isometry3d best = carried;
+  double best_score = registration_.score(scan, targets, carried, blur_m);
+  for (const double share : {0.75, 0.5, 0.25, 0.0, -0.25, -0.5, -0.75, -1.0}) {
+    Eigen::Isometry3d other = carried;
+    other.linear() = T_odom_last_.linear() * Eigen::AngleAxisd(share * turn.angle(), turn.axis()).toRotationMatrix();
+    const double score = registration_.score(scan, targets, other, blur_m);
+    if (score > best_score) best_score = score, best = other;
+  }
+  return best;
+}
+
+OdometryStep Odometry::matched(const SurfelCloud& scan, const Eigen::Isometry3d& guess) {
+  const std::array targets = {JointTarget{&local_map_, options_.local_sigma_m, 1.0}};
+  const JointResult match = registration_.align(scan, targets, guess);
+  const TargetResult& local = match.targets.front();
+  OdometryStep found;
+  const double share = scan.empty() ? 0 : static_cast<double>(local.num_correspondences) / static_cast<double>(scan.size());
+  found.joined = share > options_.min_share && local.inlier_share() > options_.min_inlier_share && fits_.admit(local, num_lost_ > 0);
+  found.T_odom_sensor = found.joined ? match.T_map_scan : guess;
+  if (found.joined) found.information = local.information;
+  found.figures = {local.num_correspondences, local.num_inliers, match.iterations, local.inlier_rmse_m, match.converged, found.joined};
+  return found;
+}
+
+/// While lost, the local map stays as it was: the way back is looked for around the last good pose, now and then in a wider circle.
+OdometryStep Odometry::found_again(const SurfelCloud& scan) {
+  constexpr int search_each = 10;
+  OdometryStep found = matched(scan, T_odom_last_);
+  if (found.joined || scan.empty() || num_lost_ % search_each != 0) return found;
+  const std::array targets = {JointTarget{&local_map_, options_.local_sigma_m, 1.0}};
+  return matched(scan, registration_.search(scan, targets, T_odom_last_, options_.search).front().match.T_map_scan);
+}
+
 OdometryStep Odometry::step(const SurfelCloud& scan) {
   OdometryStep found;
-  const bool first = local_map_.empty();
-  if (!first) {
-    found.T_odom_sensor = predict(T_odom_before_last_, T_odom_last_);
-    const std::array targets = {JointTarget{&local_map_, options_.local_sigma_m, 1.0}};
-    const JointResult match = registration_.align(scan, targets, found.T_odom_sensor);
-    const TargetResult& local = match.targets.front();
-    found.joined = local.num_correspondences > 0 && local.inlier_share() > options_.min_inlier_share;
-    found.figures = {local.num_correspondences, local.num_inliers, match.iterations, local.inlier_rmse_m, match.converged, found.joined};
-    if (found.joined) {
-      found.T_odom_sensor = match.T_map_scan;
-      found.information = local.information;
+  if (!local_map_.empty()) {
+    const Eigen::Isometry3d guess = better_guess(scan);
+    found = matched(scan, guess);
+    if (!found.joined && num_lost_ > 0) found = found_again(scan);
+    if (!found.joined) {
+      found.T_odom_sensor = guess;
+      ++num_lost_;
+      return found;
     }
+    num_lost_ = 0;
+    fits_.take(found.figures);
     T_odom_before_last_ = T_odom_last_;
     T_odom_last_ = found.T_odom_sensor;
   }

@@ -12,9 +12,21 @@ namespace priormap {
 /// Where a scan was taken by the scans before it.
 struct OdometryStep {
   Eigen::Isometry3d T_odom_sensor = Eigen::Isometry3d::Identity();
-  bool joined = false;                       ///< matched; otherwise the motion was only carried on (and for the first scan there is nothing to match)
+  bool joined = false;                       ///< matched; otherwise lost (for the first scan there is nothing to match)
   Matrix6d information = Matrix6d::Zero();   ///< of the match, tangent in sensor axes
   MatchFigures figures;
+};
+
+/// How well the scans of a drive have fitted of late.
+class UsualFit {
+ public:
+  /// Whether a match is as good as may be expected. After a loss more is asked.
+  bool admit(const TargetResult& match, bool after_loss) const;
+  void take(const MatchFigures& match);
+
+ private:
+  double share_ = 0, rmse_m_ = 0;
+  int count_ = 0;
 };
 
 /// Scan to local map, in a frame of its own, `odom` (REP 105), that begins at the first scan. Knows nothing of the prior: its errors are its own.
@@ -25,10 +37,16 @@ class Odometry {
   OdometryStep step(const SurfelCloud& scan);
 
  private:
+  Eigen::Isometry3d better_guess(const SurfelCloud& scan);
+  OdometryStep matched(const SurfelCloud& scan, const Eigen::Isometry3d& guess);
+  OdometryStep found_again(const SurfelCloud& scan);
+
   OdometryOptions options_;
   JointRegistration registration_;
   SurfelMap local_map_;
-  Eigen::Isometry3d T_odom_before_last_, T_odom_last_;
+  Eigen::Isometry3d T_odom_before_last_, T_odom_last_;   // of scans that were matched
+  UsualFit fits_;
+  int num_lost_ = 0;
 };
 
 }  // namespace priormap

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 
 #include <priormap/core/error.hpp>
 #include <priormap/core/process.hpp>
@@ -101,6 +102,13 @@ double quantile(std::vector<double> values, double q) {
   return *at;
 }
 
+/// Scans of which nobody knows where they were taken do not belong into a map.
+std::vector<MappedScan> placed(const std::vector<MappedScan>& scans) {
+  std::vector<MappedScan> kept;
+  std::copy_if(scans.begin(), scans.end(), std::back_inserter(kept), [](const MappedScan& scan) { return scan.verdict != Verdict::lost; });
+  return kept;
+}
+
 std::size_t count(const std::vector<MappedScan>& scans, Verdict verdict) {
   return static_cast<std::size_t>(std::count_if(scans.begin(), scans.end(), [&](const MappedScan& s) { return s.verdict == verdict; }));
 }
@@ -151,7 +159,7 @@ RunSummary run_mapper(const RunOptions& options, int threads, Overwrite overwrit
   RunSummary summary = summarise(scans);
   write_trajectories(output.temporary_path(), scans, start.frame);
   if (!options.no_map)
-    summary.num_map_points = write_map(output.temporary_path() / "map", *source, scans, start.frame, map_manifest(options, prior.get(), start, *source, scans),
+    summary.num_map_points = write_map(output.temporary_path() / "map", *source, placed(scans), start.frame, map_manifest(options, prior.get(), start, *source, scans),
                                        options.map, threads, events).num_points;
   times.map_s = watch.lap();
   summary.total_s = watch.seconds();

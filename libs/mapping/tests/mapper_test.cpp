@@ -65,6 +65,22 @@ TEST_F(Street, TheDefaultPresetNeedsNoPriorForOdometry) {
   EXPECT_GT(scans.back().covariance(3, 3), scans.front().covariance(3, 3));
 }
 
+/// A platform that rocks turns back when constant velocity says it turns on.
+TEST_F(Street, ARockingPlatformIsFollowed) {
+  const auto rocking = [](int k) {
+    Eigen::Isometry3d T = pose(0.3 * k, 0, 1.7, 0);
+    T.linear() = Eigen::AngleAxisd(0.06 * (k % 2 ? 1 : -1), Eigen::Vector3d::UnitY()).toRotationMatrix();
+    return T;
+  };
+  Mapper mapper(MapperOptions::preset("default"), std::nullopt, {rocking(0), rocking(0).inverse() * rocking(1)}, 1);
+  for (int k = 0; k < num_scans; ++k) mapper.step(scan_from(length_m, rocking(k), static_cast<std::size_t>(k)));
+  const auto scans = mapper.finish([&](std::size_t k) { return scan_from(length_m, rocking(static_cast<int>(k)), k); });
+  for (int k = 0; k < num_scans; ++k) {
+    EXPECT_LT(position_error(scans[static_cast<std::size_t>(k)], rocking(k)), 0.06) << k;
+    EXPECT_LT(Eigen::AngleAxisd(scans[static_cast<std::size_t>(k)].T_map_sensor.linear().transpose() * rocking(k).linear()).angle(), 0.01) << k;
+  }
+}
+
 TEST_F(Street, SigmasGrowWithoutAPriorAndNotWithOne) {
   const test::TiledPoints tiles(world_, 50);
   const NearTiles prior(tiles, MapFrame::local(), 150);

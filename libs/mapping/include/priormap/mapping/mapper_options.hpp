@@ -37,10 +37,12 @@ struct PaperOptions {
 
 /// Scan to local map.
 struct OdometryOptions {
-  JointOptions registration{.kernel_width = 2, .start_scale = 1};
+  JointOptions registration{.kernel_width = 2, .start_scale = 4, .max_iterations = 50};
   SurfelMapOptions local_map;
   double local_sigma_m = 0.02;
+  double min_share = 0.2;
   double min_inlier_share = 0.5;
+  PoseSearchOptions search;
   double local_map_radius_m = 100;
 
   template <class Visitor>
@@ -49,6 +51,7 @@ struct OdometryOptions {
     visit("local-map-voxel", local_map.voxel_m, {"edge of the voxels of the local map", "m", 0.05, 10});
     visit("local-sigma", local_sigma_m, {"standard deviation added to that of a plane of the local map", "m", 0, 10});
     visit("min-inlier-share", min_inlier_share, {"share of the correspondences that must be inliers for a match to count", "", 0, 1});
+    visit("min-local-share", min_share, {"share of a scan that the local map must know", "", 0, 1});
     visit("local-map-radius", local_map_radius_m, {"the local map is dropped beyond", "m", 1, 10000});
   }
 };
