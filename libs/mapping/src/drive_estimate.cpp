@@ -121,7 +121,7 @@ std::vector<EstimatedPose> estimate_drive(const std::vector<ScanRecord>& records
   const EstimateOptions& how = options.estimate;
   DriveGraph graph(records, how);
   PiecesOfPrior pieces(how.piece_m, how.range_m);
-  const PieceSigmas stated = {{how.wall_sigma_m, how.slope_sigma_m, how.ground_sigma_m, how.roof_sigma_m}};
+  const PieceSigmas stated = {{how.wall_sigma_m, how.slope_sigma_m, how.ground_sigma_m}};
   PieceSigmas sigmas = stated;
   Marginals marginals;
   std::vector<double> weights;

@@ -2,21 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace priormap {
 namespace {
 
-/// What lies flat above the sensor is no ground: roofs, whose heights in the prior are often guessed.
-PieceKind kind_of(const PlaneMatch& match, double sensor_z) {
+/// What lies flat above the sensor is no ground but a roof, and roofs are not heard: their heights and shapes in a prior are often guessed, and all to one side.
+std::optional<PieceKind> kind_of(const PlaneMatch& match, double sensor_z) {
   const double up = std::abs(match.normal.z());
   if (up < 0.3) return PieceKind::wall;
-  if (match.p_map.z() > sensor_z) return PieceKind::roof;
+  if (match.p_map.z() > sensor_z) return std::nullopt;
   return up < 0.9 ? PieceKind::slope : PieceKind::ground;
 }
 
-PieceKey key_of(const PlaneMatch& match, double sensor_z, double piece_m) {
+PieceKey key_of(const PlaneMatch& match, PieceKind kind, double piece_m) {
   const auto cell = [&](double v) { return static_cast<int>(std::floor(v / piece_m)); };
-  return {cell(match.p_map.x()), cell(match.p_map.y()), kind_of(match, sensor_z)};
+  return {cell(match.p_map.x()), cell(match.p_map.y()), kind};
 }
 
 }  // namespace
@@ -43,7 +44,9 @@ void PiecesOfPrior::add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const s
   std::map<PieceId, PieceEquations> equations;
   for (const PlaneMatch& match : matches) {
     if ((match.p_map - T_map_sensor.translation()).squaredNorm() > range_m_ * range_m_) continue;
-    const auto [found, is_new] = ids_.try_emplace(key_of(match, T_map_sensor.translation().z(), piece_m_), pieces_.size());
+    const auto kind = kind_of(match, T_map_sensor.translation().z());
+    if (!kind) continue;
+    const auto [found, is_new] = ids_.try_emplace(key_of(match, *kind, piece_m_), pieces_.size());
     if (is_new) pieces_.push_back({found->first.kind});
     const PieceEquations one = equations_of(match, T_map_sensor, pieces_[found->second].offset_m, noise);
     PieceEquations& sum = equations[found->second];
@@ -76,7 +79,7 @@ PieceSigmas PiecesOfPrior::estimated_sigmas(const PieceSigmas& stated, const Pie
                                             const std::vector<double>& weights) const {
   constexpr double stated_counts = 10, least_m = 0.02, most_m = 3;
   PieceSigmas estimated;
-  for (const PieceKind kind : {PieceKind::wall, PieceKind::slope, PieceKind::ground, PieceKind::roof}) {
+  for (const PieceKind kind : {PieceKind::wall, PieceKind::slope, PieceKind::ground}) {
     double squares = stated_counts * stated[kind] * stated[kind], redundancy = stated_counts;
     const double variance = used[kind] * used[kind];
     for (PieceId p = 0; p < pieces_.size(); ++p) {

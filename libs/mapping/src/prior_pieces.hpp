@@ -10,11 +10,11 @@
 
 namespace priormap {
 
-enum class PieceKind { wall, slope, ground, roof };
+enum class PieceKind { wall, slope, ground };
 
 /// One value for each kind.
 struct PieceSigmas {
-  std::array<double, 4> sigma_m;
+  std::array<double, 3> sigma_m;
   double& operator[](PieceKind kind) { return sigma_m[static_cast<std::size_t>(kind)]; }
   double operator[](PieceKind kind) const { return sigma_m[static_cast<std::size_t>(kind)]; }
 };

@@ -57,7 +57,7 @@ TEST_F(ShiftedWalls, OneShiftedHouseDoesNotMoveTheVehicle) {
   PoseGraph graph(PoseGraphOptions{.absolute_width = 0, .between_width = 0});
   graph.add_pose(pose(0, 0, 0));
   graph.add_absolute(0, pose(0, 0, 0), 1e-2 * Matrix6d::Identity());
-  pieces_.add_to(graph, {{0.3, 0.3, 0.1, 1}});
+  pieces_.add_to(graph, {{0.3, 0.3, 0.1}});
   graph.optimize();
   EXPECT_LT(std::abs(graph.pose(0).translation().x()), 0.1);
   EXPECT_NEAR(graph.pieces()[3].offset_m.x(), -3, 0.15);   // to be moved back
@@ -74,7 +74,7 @@ TEST_F(ShiftedWalls, TheSigmaOfTheWallsIsEstimatedFromTheirOffsets) {
     graph.add_pose(pose(x, 0, 0));
     graph.add_absolute(k, pose(x, 0, 0), 1e6 * Matrix6d::Identity());
   }
-  const PieceSigmas stated = {{0.3, 0.3, 0.1, 1}};
+  const PieceSigmas stated = {{0.3, 0.3, 0.1}};
   PieceSigmas sigmas = stated;
   pieces_.add_to(graph, sigmas);
   graph.optimize();

@@ -95,7 +95,6 @@ struct EstimateOptions {
   double wall_sigma_m = 0.3;
   double slope_sigma_m = 0.3;
   double ground_sigma_m = 0.1;
-  double roof_sigma_m = 1;
   double surface_sigma_m = 0.1;
   double kernel_width = 3;
   int passes = 3;
@@ -110,7 +109,6 @@ struct EstimateOptions {
     visit("wall-sigma", wall_sigma_m, {"standard deviation of the offsets of the prior's walls to begin with; it is estimated", "m", 1e-3, 100});
     visit("slope-sigma", slope_sigma_m, {"the same of slopes, such as the edges of a surface model", "m", 1e-3, 100});
     visit("ground-sigma", ground_sigma_m, {"the same of level ground", "m", 1e-3, 100});
-    visit("roof-sigma", roof_sigma_m, {"the same of what lies flat above the sensor", "m", 1e-3, 100});
     visit("surface-sigma", surface_sigma_m, {"roughness of the prior's surfaces against the real ones, within a piece", "m", 1e-3, 10});
     visit("piece-kernel-width", kernel_width, {"width of the Geman-McClure kernel within a piece, in standard deviations", "", 0.5, 100});
     visit("passes", passes, {"times that the drive is compared with the prior and estimated anew", "", 1, 10});
