@@ -27,18 +27,19 @@ Odometry::Odometry(const OdometryOptions& options, const Eigen::Isometry3d& firs
     : options_(options), registration_(options.registration), local_map_(options.local_map), T_odom_before_last_(first_motion.inverse()),
       T_odom_last_(Eigen::Isometry3d::Identity()) {}
 
-/// The motion carried on; or without its turn, where the scan fits better so: a platform that rocks turns back as often as it turns on.
+/// The motion carried on; or with another pitch and roll, where the scan fits better so: a platform that rocks turns back as often as it turns on. Its yaw stays: the rings of
+/// the lasers on the ground fit best where nothing has turned.
 Eigen::Isometry3d Odometry::better_guess(const SurfelCloud& scan) {
   constexpr double rocking_rad = 0.01, blur_m = 0.3;
   const Eigen::Isometry3d carried = predict(T_odom_before_last_, T_odom_last_);
-  const Eigen::AngleAxisd turn(T_odom_last_.linear().transpose() * carried.linear());
-  if (turn.angle() < rocking_rad) return carried;
+  const Eigen::Vector3d turn = log_so3(Eigen::Quaterniond(T_odom_last_.linear().transpose() * carried.linear()));
+  if (turn.head<2>().norm() < rocking_rad) return carried;
   const std::array targets = {JointTarget{&local_map_, options_.local_sigma_m, 1.0}};
   Eigen::Isometry3d best = carried;
   double best_score = registration_.score(scan, targets, carried, blur_m);
   for (const double share : {0.75, 0.5, 0.25, 0.0, -0.25, -0.5, -0.75, -1.0}) {
     Eigen::Isometry3d other = carried;
-    other.linear() = T_odom_last_.linear() * Eigen::AngleAxisd(share * turn.angle(), turn.axis()).toRotationMatrix();
+    other.linear() = T_odom_last_.linear() * exp_so3({share * turn.x(), share * turn.y(), turn.z()}).toRotationMatrix();
     const double score = registration_.score(scan, targets, other, blur_m);
     if (score > best_score) best_score = score, best = other;
   }
