@@ -10,6 +10,12 @@ Matrix6d carried_covariance() {
   return sigmas.cwiseAbs2().asDiagonal();
 }
 
+Matrix6d unknown_gap_covariance() {
+  Vector6d sigmas;
+  sigmas << Eigen::Vector3d::Constant(3), Eigen::Vector3d::Constant(100);
+  return sigmas.cwiseAbs2().asDiagonal();
+}
+
 Matrix6d start_information(const Eigen::Isometry3d& T_map_sensor) {
   Vector6d sigmas;
   sigmas << 0.02, 0.02, 0.2, 5, 5, 1;   // in map axes

@@ -8,6 +8,9 @@ namespace priormap {
 /// A motion that is only the last one carried on: two degrees and half a metre.
 Matrix6d carried_covariance();
 
+/// A gap in the odometry of nobody knows how long: half a turn and a hundred metres.
+Matrix6d unknown_gap_covariance();
+
 /// The start that a user gives: well levelled, its height within a metre, its place within five metres and its direction within ten degrees.
 Matrix6d start_information(const Eigen::Isometry3d& T_map_sensor);
 

@@ -22,7 +22,8 @@ std::vector<Keyframe> keyframes_of(const std::vector<ScanRecord>& records, const
   while (last_joined > 0 && !records[last_joined].odometry.joined) --last_joined;
   for (std::size_t i = 0; i < records.size(); ++i) {
     const OdometryStep& step = records[i].odometry;
-    if (i && !step.joined) continue;   // lost: what comes after is matched to the same local map
+    if (step.began_anew) carried += unknown_gap_covariance();
+    if (i && !step.joined) continue;   // lost: what comes after is matched to the same local map, or to a new one
     if (i && !step.figures.converged) carried += carried_covariance();
     const bool far = keyframes.empty() || (step.T_odom_sensor.translation() - records[keyframes.back().record].odometry.T_odom_sensor.translation()).norm() >= options.keyframe_m;
     if (!far && i != last_joined) continue;

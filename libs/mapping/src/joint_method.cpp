@@ -18,6 +18,7 @@ class JointMethod : public MappingMethod {
     const SurfelCloud surfels = reducer_.reduce(scan.points);
     const OdometryStep step = odometry_.step(surfels);
     if (!records_.empty()) mapped.local = step.figures;
+    if (step.began_anew) tracker_.begin_anew();
     const bool lost = !records_.empty() && !step.joined;
     if (const auto match = lost ? std::nullopt : tracker_.follow(surfels, step.T_odom_sensor)) {
       mapped.prior = match->figures;

@@ -1,5 +1,6 @@
 #include "odometry.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -62,26 +63,34 @@ OdometryStep Odometry::matched(const SurfelCloud& scan, const Eigen::Isometry3d&
 /// While lost, the local map stays as it was: the way back is looked for around the last good pose, now and then in a wider circle.
 OdometryStep Odometry::found_again(const SurfelCloud& scan) {
   constexpr int search_each = 10;
+  constexpr double wider_m = 0.15, widest_m = 20;   // a lost scan, in all
   OdometryStep found = matched(scan, T_odom_last_);
   if (found.joined || scan.empty() || num_lost_ % search_each != 0) return found;
   const std::array targets = {JointTarget{&local_map_, options_.local_sigma_m, 1.0}};
-  return matched(scan, registration_.search(scan, targets, T_odom_last_, options_.search).front().match.T_map_scan);
+  PoseSearchOptions circle = options_.search;
+  circle.radius_m = std::min(circle.radius_m + wider_m * num_lost_, widest_m);
+  return matched(scan, registration_.search(scan, targets, T_odom_last_, circle).front().match.T_map_scan);
 }
 
 OdometryStep Odometry::step(const SurfelCloud& scan) {
+  constexpr int give_up_after = 100;
   OdometryStep found;
+  found.T_odom_sensor = T_odom_last_;
   if (!local_map_.empty()) {
     const Eigen::Isometry3d guess = better_guess(scan);
     found = matched(scan, guess);
     if (!found.joined && num_lost_ > 0) found = found_again(scan);
     if (!found.joined) {
       found.T_odom_sensor = guess;
-      ++num_lost_;
-      return found;
+      if (++num_lost_ < give_up_after) return found;
+      found.began_anew = true;   // a gap in the recording, perhaps: the old street does not come back
+      local_map_ = SurfelMap(options_.local_map);
+      fits_ = {};
+    } else {
+      fits_.take(found.figures);
     }
     num_lost_ = 0;
-    fits_.take(found.figures);
-    T_odom_before_last_ = T_odom_last_;
+    T_odom_before_last_ = found.began_anew ? found.T_odom_sensor : T_odom_last_;
     T_odom_last_ = found.T_odom_sensor;
   }
   local_map_.insert(scan, found.T_odom_sensor);

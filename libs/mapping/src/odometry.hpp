@@ -13,6 +13,7 @@ namespace priormap {
 struct OdometryStep {
   Eigen::Isometry3d T_odom_sensor = Eigen::Isometry3d::Identity();
   bool joined = false;                       ///< matched; otherwise lost (for the first scan there is nothing to match)
+  bool began_anew = false;                   ///< nothing was found for so long that the local map begins again here: how far off is not known
   Matrix6d information = Matrix6d::Zero();   ///< of the match, tangent in sensor axes
   MatchFigures figures;
 };

@@ -60,10 +60,19 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
   if (++num_heard_ == options_.start_keyframes) hypotheses_.clear();
 }
 
+void PriorTracker::begin_anew() {
+  T_odom_last_.reset();
+  prior_weight_ = 1;
+  hypotheses_.clear();
+  num_heard_ = 0;
+  num_surfels_heard_ = 0;
+}
+
 std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, const Eigen::Isometry3d& T_odom_sensor) {
   if (!prior_ || whole_scan.empty() || (T_odom_last_ && (T_odom_sensor.translation() - T_odom_last_->translation()).norm() < options_.keyframe_m)) return std::nullopt;
   const Eigen::Isometry3d guess = T_map_odom_ * T_odom_sensor;
   const SurfelCloud scan = without_roofs(whole_scan, guess.linear(), scan_voxel_m_);
+  if (scan.empty()) return std::nullopt;
   const SurfelMap& map = prior_->around(guess.translation());
   JointTarget target{&map, options_.prior_sigma_m, prior_weight_};
   if (num_heard_ < options_.start_keyframes) compare_hypotheses(scan, T_odom_sensor, map);

@@ -8,7 +8,6 @@
 #include <priormap/mapping/prior_window.hpp>
 #include <priormap/registration/register_joint.hpp>
 
-
 namespace priormap {
 
 /// What the prior says of a scan.
@@ -27,6 +26,8 @@ class PriorTracker {
   PriorTracker(const TrackingOptions& options, double scan_voxel_m, const std::optional<NearTiles>& prior, const Eigen::Isometry3d& T_map_first);
   /// The prior's word is asked each `keyframe_m`. @return what it was
   std::optional<PriorMatch> follow(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor);
+  /// The odometry has a gap: the next scan is looked for around its pose as the first one was.
+  void begin_anew();
   Eigen::Isometry3d T_map_odom() const { return T_map_odom_; }
 
  private:

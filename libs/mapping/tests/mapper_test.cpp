@@ -65,6 +65,19 @@ TEST_F(Street, TheDefaultPresetNeedsNoPriorForOdometry) {
   EXPECT_GT(scans.back().covariance(3, 3), scans.front().covariance(3, 3));
 }
 
+/// A gap in the recording: the old street never comes back, and the drive must not stay lost for ever.
+TEST_F(Street, ADriveThatIsNeverFoundAgainBeginsAnew) {
+  Mapper mapper(MapperOptions::preset("default"), std::nullopt, {truth(0), truth(0).inverse() * truth(1)}, 1);
+  for (int k = 0; k < num_scans; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+  Scan empty;
+  for (std::size_t k = 0; k < 100; ++k) EXPECT_EQ(mapper.step(empty).verdict, Verdict::lost);
+  const Scan there = scan_from(length_m, truth(2), 2);
+  mapper.step(there);
+  EXPECT_NE(mapper.step(there).verdict, Verdict::lost);
+  const auto scans = mapper.finish(read_again);
+  EXPECT_GT(scans.back().covariance(3, 3), 1000);   // and says that it does not know where
+}
+
 /// A platform that rocks turns back when constant velocity says it turns on.
 TEST_F(Street, ARockingPlatformIsFollowed) {
   const auto rocking = [](int k) {
