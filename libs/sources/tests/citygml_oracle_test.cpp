@@ -49,6 +49,7 @@ SurfaceClass class_of(Type type, SurfaceClass inherited) {
 struct OracleAreas {
   std::map<SurfaceClass, double> areas;
   std::set<const citygml::Polygon*> seen;
+  std::size_t buildings = 0;
 
   static Ring3 ring(const citygml::LinearRing& r) {
     Ring3 points;
@@ -70,6 +71,7 @@ struct OracleAreas {
   /// Boundary surfaces first: a solid repeats their polygons.
   void add(const citygml::CityObject& object, SurfaceClass inherited) {
     const SurfaceClass surface_class = class_of(object.getType(), inherited);
+    buildings += object.getType() == Type::COT_Building;
     for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i) add(object.getChildCityObject(i), surface_class);
     for (unsigned i = 0; i < object.getGeometriesCount(); ++i) add(object.getGeometry(i), surface_class);
   }
@@ -106,6 +108,7 @@ TEST_P(CityGmlOracle, AreaPerSurfaceClassAgreesWithin01Percent) {
     EXPECT_NEAR(found->second, area, 0.001 * area) << "class " << static_cast<int>(surface_class);
   }
   EXPECT_EQ(areas.size(), oracle.areas.size());
+  EXPECT_EQ(ours.size(), oracle.buildings);
 }
 
 INSTANTIATE_TEST_SUITE_P(RealFiles, CityGmlOracle,

@@ -55,6 +55,20 @@ TEST(CityGml, APolygonThatSolidAndWallShareCountsOnceAsWall) {
   }
 }
 
+TEST(CityGml, EveryPartAndSurfaceMayStateItsEnvelopeAndIsStillOfItsBuilding) {
+  const std::string envelope = "<gml:boundedBy><gml:Envelope srsName='CH1903'/></gml:boundedBy>";
+  const auto wall = [&](double z) {
+    return "<bldg:boundedBy><bldg:WallSurface>" + envelope + "<bldg:lod2MultiSurface><gml:MultiSurface>" + member(square("", z)) +
+           "</gml:MultiSurface></bldg:lod2MultiSurface></bldg:WallSurface></bldg:boundedBy>";
+  };
+  const std::string part = "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id='part'>" + envelope + wall(1) + "</bldg:BuildingPart></bldg:consistsOfBuildingPart>";
+  const auto models = read(document(building(envelope + wall(0) + part) + building(envelope + wall(2), "b2")));
+  ASSERT_EQ(models.size(), 2u);
+  EXPECT_EQ(models[0].polygons.size(), 2u);
+  EXPECT_EQ(models[0].srs_name, "CH1903");
+  EXPECT_EQ(models[1].polygons.size(), 1u);
+}
+
 TEST(CityGml, TheHighestLevelOfEachPartIsTakenUnlessOneIsAskedFor) {
   const std::string part = "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id='part'>" + solid(member(square("", 5, 2)), 1) +
                            surface("RoofSurface", member(square("", 7, 3))) + "</bldg:BuildingPart></bldg:consistsOfBuildingPart>";
