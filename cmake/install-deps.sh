@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The one list of system packages (Debian 12). Installs only what is missing; run as root or with sudo.
 #   cmake/install-deps.sh           what the build and the tests need
-#   cmake/install-deps.sh --extra   and what fuzzing, clang-tidy and the arm64 test need
+#   cmake/install-deps.sh --arm64   and what the arm64 test needs, which is skipped otherwise
+#   cmake/install-deps.sh --extra   all this, and what fuzzing and clang-tidy need
 set -euo pipefail
 
 packages=(
@@ -18,9 +19,13 @@ packages=(
   # tests: GoogleTest, benchmarks, libcitygml as an oracle, tools of the test scripts
   libgtest-dev libbenchmark-dev libcitygml-dev xz-utils
 )
-extra=(clang-16 libclang-rt-16-dev clang-tidy-16 clang-format g++-aarch64-linux-gnu qemu-user)
+arm64=(g++-aarch64-linux-gnu qemu-user)
+extra=(clang-16 libclang-rt-16-dev clang-tidy-16 clang-format)
 
-[ "${1:-}" = "--extra" ] && packages+=("${extra[@]}")
+case "${1:-}" in
+  --arm64) packages+=("${arm64[@]}") ;;
+  --extra) packages+=("${arm64[@]}" "${extra[@]}") ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do

@@ -51,8 +51,9 @@ inline World town(double length, unsigned seed, const Eigen::Vector3d& origin = 
   std::uniform_real_distribution<double> u(0, 1);
   for (const double side : {-1.0, 1.0})
     for (double x = -80; x < length + 80;) {
-      const double front = 10 + 15 * u(random), depth = 8 + 6 * u(random), setback = 8 + 5 * u(random);
-      world.add_box(x + 0.5 * front, side * (setback + 0.5 * depth), front, depth, 6 + 9 * u(random), 0.06 * (u(random) - 0.5));
+      // One by one: the order in which arguments are evaluated differs between machines.
+      const double front = 10 + 15 * u(random), depth = 8 + 6 * u(random), setback = 8 + 5 * u(random), yaw = 0.06 * (u(random) - 0.5), height = 6 + 9 * u(random);
+      world.add_box(x + 0.5 * front, side * (setback + 0.5 * depth), front, depth, height, yaw);
       x += front + 2 + 8 * u(random);
     }
   return world;

@@ -1,0 +1,37 @@
+# priormap_arm64_program(NAME SOURCES ... INCLUDES ...)   NAME for 64-bit ARM, made by the cross compiler beside the build's own, to be run by qemu-user.
+# Sets in the caller: NAME_REASON why there is none, else empty; NAME_RUN and NAME_DISASSEMBLE (of the sources' objects), commands for a shell.
+include_guard()
+
+find_program(PRIORMAP_ARM64_CXX aarch64-linux-gnu-g++)
+find_program(PRIORMAP_ARM64_OBJDUMP aarch64-linux-gnu-objdump)
+find_program(PRIORMAP_ARM64_QEMU NAMES qemu-aarch64 qemu-aarch64-static)
+
+function(priormap_arm64_program name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;INCLUDES")
+  if(NOT PRIORMAP_ARM64_CXX OR NOT PRIORMAP_ARM64_OBJDUMP OR NOT PRIORMAP_ARM64_QEMU)
+    set(${name}_REASON "no arm64 cross compiler or no qemu-aarch64 here: cmake/install-deps.sh --arm64 brings both" PARENT_SCOPE)
+    set(${name}_RUN "" PARENT_SCOPE)
+    set(${name}_DISASSEMBLE "" PARENT_SCOPE)
+    return()
+  endif()
+  get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+  list(TRANSFORM arg_INCLUDES PREPEND "-I")
+  list(TRANSFORM eigen PREPEND "-isystem")
+  set(folder "${CMAKE_CURRENT_BINARY_DIR}/${name}_arm64")
+  file(MAKE_DIRECTORY "${folder}")
+  set(objects)
+  foreach(source IN LISTS arg_SOURCES)
+    cmake_path(ABSOLUTE_PATH source NORMALIZE)
+    cmake_path(GET source STEM stem)
+    set(object "${folder}/${stem}.o")
+    add_custom_command(OUTPUT "${object}" DEPENDS "${source}" DEPFILE "${object}.d" VERBATIM COMMENT "Building ${stem} for arm64"
+      COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} "${PRIORMAP_ARM64_CXX}" -std=c++20 -O2 -ffp-contract=off ${arg_INCLUDES} ${eigen} -MMD -MF "${object}.d" -MT "${object}" -c "${source}" -o "${object}")
+    list(APPEND objects "${object}")
+  endforeach()
+  add_custom_command(OUTPUT "${folder}/${name}" DEPENDS ${objects} VERBATIM COMMENT "Linking ${name} for arm64"
+    COMMAND "${PRIORMAP_ARM64_CXX}" -static ${objects} -o "${folder}/${name}")
+  add_custom_target(${name}_arm64 ALL DEPENDS "${folder}/${name}")
+  set(${name}_REASON "" PARENT_SCOPE)
+  set(${name}_RUN "'${PRIORMAP_ARM64_QEMU}' '${folder}/${name}'" PARENT_SCOPE)
+  set(${name}_DISASSEMBLE "'${PRIORMAP_ARM64_OBJDUMP}' -d '${folder}'/kernels_portable.o" PARENT_SCOPE)
+endfunction()
