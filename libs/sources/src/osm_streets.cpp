@@ -55,9 +55,13 @@ std::vector<OsmStreet> read_osm_streets(const std::filesystem::path& file) {
     Locations locations;
     LocationsForWays locations_for_ways(locations);
     locations_for_ways.ignore_errors();   // streets cut at the extract's edge are left out below
-    osmium::io::Reader reader(osmium::io::File(file.string()), osmium::osm_entity_bits::node | osmium::osm_entity_bits::way);
-    osmium::apply(reader, locations_for_ways, collector);
-    reader.close();
+    const osmium::io::File input(file.string());
+    osmium::io::Reader nodes(input, osmium::osm_entity_bits::node);   // first, wherever the file has them
+    osmium::apply(nodes, locations_for_ways);
+    nodes.close();
+    osmium::io::Reader ways(input, osmium::osm_entity_bits::way);
+    osmium::apply(ways, locations_for_ways, collector);
+    ways.close();
   } catch (const std::exception& error) {
     throw FormatError(file, std::string("is not a readable OSM file: ") + error.what());
   }

@@ -33,10 +33,15 @@ class OsmText {
     for (int y = 0; y < 20; ++y)
       for (int x = 0; x < 20; ++x)
         nodes += "<node id='" + std::to_string(100 * y + x) + "' version='1' lat='" + std::to_string(y * 1e-5) + "00' lon='" + std::to_string(x * 1e-5) + "00'/>\n";
-    return "<?xml version='1.0' encoding='UTF-8'?>\n<osm version='0.6'>\n" + nodes + ways_ + relations_ + "</osm>\n";
+    return file_of(nodes + ways_ + relations_);
+  }
+  std::string nodes_last() const {
+    const std::string sorted = text(), nodes = sorted.substr(sorted.find("<node"), sorted.find("<way") - sorted.find("<node"));
+    return file_of(relations_ + ways_ + nodes);
   }
 
  private:
+  static std::string file_of(const std::string& objects) { return "<?xml version='1.0' encoding='UTF-8'?>\n<osm version='0.6'>\n" + objects + "</osm>\n"; }
   std::string ways_, relations_;
 };
 
@@ -85,6 +90,17 @@ TEST_F(OsmFootprints, AMultipolygonOfPiecesWithTwoTouchingHoles) {
   EXPECT_EQ(footprints[0].id, "relation/9");
   EXPECT_EQ(footprints[0].rings.size(), 2u) << "the two holes melt";
   EXPECT_NEAR(cells(footprints[0]), 100 - 8, 1e-6);
+  EXPECT_EQ(diagnostics_.total(), 0u);
+}
+
+TEST_F(OsmFootprints, ObjectsMayStandBeforeWhatTheyReferTo) {
+  OsmText town;
+  town.way(1, {0, 9, 909, 900, 0}, "").way(2, {101, 108, 808, 801, 101}, "").way(5, {10, 12, 212, 10}, building);
+  town.relation(9, OsmText::member(1, "outer") + OsmText::member(2, "inner") + multipolygon + building);
+  const auto footprints = read_osm_footprints({write("unsorted.osm", town.nodes_last())}, 2, diagnostics_);
+  ASSERT_EQ(footprints.size(), 2u);
+  EXPECT_NEAR(cells(footprints[0]), 81 - 49, 1e-6);
+  EXPECT_NEAR(cells(footprints[1]), 2, 1e-6);
   EXPECT_EQ(diagnostics_.total(), 0u);
 }
 

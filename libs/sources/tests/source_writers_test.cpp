@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include <priormap/core/error.hpp>
 #include <priormap/core/hash.hpp>
@@ -64,6 +65,19 @@ TEST(OsmStreets, MeetAtSharedNodesAndLeaveFootwaysOut) {
   EXPECT_EQ(streets[1].width_m, 4.5);
   EXPECT_NEAR(streets[1].lon_lat[1].x(), 11.5, 1e-7);
   EXPECT_THROW(read_osm_streets("/nowhere/town.osm.pbf"), IoError);
+}
+
+TEST(OsmStreets, MayStandBeforeTheirNodesAndNodesInAnyOrder) {
+  const fs::path file = fresh("unsorted.osm");
+  std::ofstream(file) << "<?xml version='1.0'?><osm version='0.6'>"
+                         "<way id='8' version='1'><nd ref='2'/><nd ref='1'/><tag k='highway' v='residential'/></way>"
+                         "<node id='2' version='1' lat='48.2' lon='11.2'/><node id='1' version='1' lat='48.1' lon='11.1'/>"
+                         "<way id='7' version='1'><nd ref='1'/><nd ref='2'/><tag k='highway' v='residential'/></way></osm>";
+  const auto streets = read_osm_streets(file);
+  ASSERT_EQ(streets.size(), 2u);
+  EXPECT_EQ(streets[0].id, "way/7");
+  EXPECT_NEAR((streets[0].lon_lat[1] - Eigen::Vector2d(11.2, 48.2)).norm(), 0, 1e-7);
+  EXPECT_NEAR((streets[1].lon_lat[1] - Eigen::Vector2d(11.1, 48.1)).norm(), 0, 1e-7);
 }
 
 TEST(OsmWriter, SameExtractSameBytes) {

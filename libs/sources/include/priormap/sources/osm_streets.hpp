@@ -16,7 +16,7 @@ struct OsmStreet {
   double width_m = 0;                          ///< as tagged, else usual for its kind
 };
 
-/// Streets of OSM files (.osm, .osm.gz, .osm.bz2, .osm.pbf), ordered by id; tunnels, areas and ways that miss a node are left out.
+/// Streets of OSM files (.osm, .osm.gz, .osm.bz2, .osm.pbf), ordered by id, the objects of a file in any order; tunnels, areas and ways that miss a node are left out.
 /// @throws IoError, FormatError naming the file
 std::vector<OsmStreet> read_osm_streets(const std::filesystem::path& file);
 
