@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include <priormap/core/error.hpp>
 
@@ -57,7 +58,12 @@ std::vector<double> parse_number_list(const std::vector<std::string>& texts, con
   for (const std::string& text : texts)
     for (std::size_t start = 0; start <= text.size();) {
       const std::size_t comma = std::min(text.find(',', start), text.size());
-      values.push_back(parse_number(text.substr(start, comma - start), field));
+      const std::string between_commas = text.substr(start, comma - start);
+      std::istringstream words(between_commas);
+      std::string word;
+      if (!(words >> word)) parse_number(between_commas, field);   // refuses
+      do values.push_back(parse_number(word, field));
+      while (words >> word);
       start = comma + 1;
     }
   return values;

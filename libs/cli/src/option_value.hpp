@@ -12,6 +12,7 @@ namespace priormap::cli {
 double parse_number(const std::string& text, const OptionField& field);
 std::int64_t parse_integer(const std::string& text, const OptionField& field);
 std::uint64_t parse_unsigned(const std::string& text, const OptionField& field);
+/// Numbers parted by commas, white space or both.
 std::vector<double> parse_number_list(const std::vector<std::string>& texts, const OptionField& field);
 
 /// The shortest text that reads back as the same number.

@@ -137,6 +137,8 @@ struct ToolApp::Impl {
   }
 
   void parse(int argc, char** argv) {
+    const bool has_positionals = !app.get_options([](const CLI::Option* option) { return option->get_positional(); }).empty();
+    for (CLI::Option* list : number_lists) list->allow_extra_args(!has_positionals);   // 1 2 3 for 1,2,3 where nothing else could be meant
     try {
       app.parse(argc, argv);
     } catch (const CLI::RequiredError&) {
@@ -157,6 +159,7 @@ struct ToolApp::Impl {
   CLI::App app;
   std::string group = "Options";
   std::vector<Dumped> dumped;
+  std::vector<CLI::Option*> number_lists;
   int threads = 0;
   bool overwrite = false, quiet = false, log_json = false, dump = false;
 };
@@ -249,13 +252,13 @@ void ToolApp::option(const std::string& flags, std::vector<std::string>& value, 
 }
 
 void ToolApp::option(const std::string& flags, std::vector<double>& value, const OptionField& field) {
-  impl_->add(flags, [&value, field](const Texts& texts) { value = parse_number_list(texts, field); }, std::string(field.help),
-             type_name("A,B,..", field), join(number_literals(value), ","), [&value]() -> std::optional<std::string> {
-               if (value.empty()) return std::nullopt;
-               return toml_array(number_literals(value));
-             })
-      ->expected(1, CLI::detail::expected_max_vector_size)
-      ->allow_extra_args(false);
+  CLI::Option* list = impl_->add(flags, [&value, field](const Texts& texts) { value = parse_number_list(texts, field); }, std::string(field.help),
+                                 type_name("A,B,..", field), join(number_literals(value), ","), [&value]() -> std::optional<std::string> {
+                                   if (value.empty()) return std::nullopt;
+                                   return toml_array(number_literals(value));
+                                 });
+  list->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args(false);
+  impl_->number_lists.push_back(list);
 }
 
 void ToolApp::option(const std::string& flags, std::optional<double>& value, const OptionField& field) {

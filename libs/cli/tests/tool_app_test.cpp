@@ -146,6 +146,29 @@ TEST(ToolAppTest, WrongUsageIsOneLineAndExitCode2) {
             std::string::npos);
 }
 
+TEST(ToolAppTest, NumbersOfAListArePartedByCommasOrSpaces) {
+  for (const std::string text : {"1 -2.5 3 4", "1,-2.5, 3 ,4", " 1, -2.5 3\t4 "})
+    EXPECT_EQ(Demo({"a", "-o", "out", "--bbox", text}).options.bbox, (std::vector<double>{1, -2.5, 3, 4})) << text;
+  for (const std::string text : {"1,,2", "1,2,", "", ",", "1 two"})
+    EXPECT_NE(Demo({"a", "-o", "out", "--bbox", text}).err.find("is not a number"), std::string::npos) << text;
+  const Demo with_positional({"-o", "out", "--bbox", "1,2,3,4", "5"});
+  EXPECT_EQ(with_positional.inputs, (std::vector<std::string>{"5"}));
+}
+
+TEST(ToolAppTest, ATakerOfNoPositionalsTakesNumbersOneByOne) {
+  std::vector<double> pose;
+  bool flagged = false;
+  ToolApp app("demo", "A demonstration");
+  app.option("--pose", pose, OptionField{"Pose"});
+  app.flag("--flag", flagged, "Flag");
+  std::vector<std::string> arguments{"demo", "--pose", "455394.6", "-0.0069", "1e-3", "--flag"};
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  EXPECT_EQ(app.run(static_cast<int>(argv.size()), argv.data(), [](const ToolContext&) {}), 0);
+  EXPECT_EQ(pose, (std::vector<double>{455394.6, -0.0069, 1e-3}));
+  EXPECT_TRUE(flagged);
+}
+
 TEST(ToolAppTest, CommandLineWinsOverConfigFile) {
   const ConfigFile config("INPUT = [\"a, b.osm\", 'c.osm']\noutput = \"out\"\ncount = 7\ndefault-height = 20\nroofs = false\nbbox = [1, 2.5]\nquiet = true\n");
   const Demo demo({"--config", config.path(), "--count", "2"});

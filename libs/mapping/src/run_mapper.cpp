@@ -143,6 +143,7 @@ RunSummary run_mapper(const RunOptions& options, int threads, Overwrite overwrit
   const ScanRange range = range_of(*source, options);
   const auto prior = options.prior.empty() ? nullptr : open_prior(options.prior, options.prior_options);
   const Start start = find_start(options.initial, prior.get(), first_scan(*source, range.first).points, method.prior_radius_m);
+  if (prior) warn_of_height(start, *prior, events);
   std::optional<NearTiles> near;
   if (prior) near.emplace(*prior, start.frame, method.prior_radius_m, threads);
   Mapper mapper(method, near, {start.T_map_sensor, motion_at_start(*source, range.first, range.last)}, threads);

@@ -17,7 +17,8 @@ constexpr double rad_per_deg = std::numbers::pi / 180;
 void check(const InitialPose& initial, const PriorPoints* prior) {
   const bool has_pose = !initial.pose.empty(), has_place = !initial.lon_lat_deg.empty();
   if (has_pose && has_place) throw UsageError("--initial-pose and --initial-lonlat say the same thing: give one of them");
-  if (has_pose && initial.pose.size() != 7) throw UsageError("--initial-pose takes seven numbers x,y,z,qx,qy,qz,qw");
+  if (has_pose && initial.pose.size() != 7)
+    throw UsageError("--initial-pose takes seven numbers x,y,z,qx,qy,qz,qw, not " + std::to_string(initial.pose.size()));
   if (has_place && initial.lon_lat_deg.size() != 2) throw UsageError("--initial-lonlat takes two numbers, longitude and latitude");
   if (has_place && (std::abs(initial.lon_lat_deg[0]) > 180 || std::abs(initial.lon_lat_deg[1]) > 90))
     throw UsageError("--initial-lonlat: longitude lies in [-180, 180], latitude in [-90, 90], in this order");
@@ -55,9 +56,10 @@ double ground_below_sensor(const PointCloud& scan) {
   return low_quantile(std::move(heights));
 }
 
-double prior_ground(const PriorPoints& prior, const Eigen::Vector3d& place) {
+/// Of the prior near a place, in its heights; nothing where it has no points within 100 m.
+std::optional<double> ground_near(const PriorPoints& prior, const Eigen::Vector3d& place) {
   for (const double radius_m : {20.0, 50.0, 100.0}) {
-    const double r = radius_m / prior.crs()->horizontal_unit_m();
+    const double r = radius_m / prior.units().horizontal_m;
     std::vector<double> heights;
     for (const TileKey key : prior.tiles_within({place.x() - r, place.y() - r, place.x() + r, place.y() + r})) {
       const PointCloud tile = prior.load(key);
@@ -66,6 +68,11 @@ double prior_ground(const PriorPoints& prior, const Eigen::Vector3d& place) {
     }
     if (!heights.empty()) return low_quantile(std::move(heights));
   }
+  return std::nullopt;
+}
+
+double prior_ground(const PriorPoints& prior, const Eigen::Vector3d& place) {
+  if (const auto ground = ground_near(prior, place)) return *ground;
   throw Error("the prior has no points within 100 m of --initial-lonlat to take the height of the ground from: give --initial-height");
 }
 
@@ -112,6 +119,20 @@ Start start_at_pose(const InitialPose& initial, const PriorPoints* prior, double
 Start find_start(const InitialPose& initial, const PriorPoints* prior, const PointCloud& first_scan, double prior_radius_m) {
   check(initial, prior);
   return initial.lon_lat_deg.empty() ? start_at_pose(initial, prior, prior_radius_m) : start_at_lon_lat(initial, prior, first_scan, prior_radius_m);
+}
+
+void warn_of_height(const Start& start, const PriorPoints& prior, const Events& events) {
+  constexpr double usual_m = 20;   // bridges apart
+  const Eigen::Vector3d p_map = start.T_map_sensor.translation();
+  const Eigen::Vector3d place = start.crs ? start.frame.to_projected(p_map) : p_map;
+  const auto ground = ground_near(prior, place);
+  if (!ground) return;
+  const double above_m = p_map.z() - *ground * prior.units().vertical_m;
+  if (std::abs(above_m) <= usual_m) return;
+  const bool undeclared = start.crs && !start.crs->has_vertical();
+  events.warn("the start lies " + readable_distance(std::abs(above_m)) + (above_m > 0 ? " above" : " below") + " the ground of " + prior.identity().name + " there" +
+              (undeclared ? ", whose heights are undeclared: make the prior with heights that the pose shares (--terrain, --crs H+V)" : ": check its height") +
+              ", or let the prior give it with --initial-lonlat without --initial-height");
 }
 
 }  // namespace priormap

@@ -79,6 +79,20 @@ TEST_F(Run, GeoreferencedReportHoldsItsSchema) {
   EXPECT_NEAR(report()["frame"]["grid_scale"], 0.99977, 2e-5);
 }
 
+TEST_F(Run, AStartFarAboveThePriorsGroundIsBlamedOnHeights) {
+  std::string warnings;
+  const Events events{[&](const std::string& message) { warnings += message + "\n"; }, {}, {}};
+  options_.no_map = true;
+  options_.prior = folder_.path() / "prior.ply";
+  options_.initial.pose = {640000.2, 5359000, 491.7, 0, 0, 0, 1};
+  options_.prior_options = {"EPSG:25832+7837", {640000, 5359000, 490}, ""};
+  run_mapper(options_, 1, Overwrite::refuse, events);
+  EXPECT_EQ(warnings, "");
+  options_.prior_options = {"EPSG:25832", {640000, 5359000, 0}, ""};   // buildings raised without terrain
+  run_mapper(options_, 1, Overwrite::allow, events);
+  EXPECT_NE(warnings.find("the start lies 492 m above the ground of prior.ply there, whose heights are undeclared"), std::string::npos) << warnings;
+}
+
 TEST_F(Run, TheSchemaSeesAFault) {
   run_mapper(options_, 1, Overwrite::refuse, {});
   auto broken = report();

@@ -1,5 +1,6 @@
 #include <priormap/prior/prior_manifest.hpp>
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 
@@ -154,7 +155,8 @@ std::string manifest_json(const PriorManifest& manifest) {
 }
 
 std::string attribution_text(const PriorManifest& manifest) {
-  std::string text = "This map prior was made from:\n";
+  const bool is_map = !manifest.sources.empty() && std::ranges::all_of(manifest.sources, [](const PriorSource& source) { return source.kind == "mapper"; });
+  std::string text = std::string("This ") + (is_map ? "map" : "prior") + " was made from:\n";
   for (const PriorSource& source : manifest.sources) {
     text += "\n" + source.file_name + " (" + source.kind + (source.date.empty() ? "" : ", " + source.date) + ")\n";
     text += "  " + (source.attribution.empty() ? "attribution unknown" : source.attribution) + "\n";

@@ -142,5 +142,10 @@ TEST(PriorStore, SchemaViolationsNameTheField) {
   EXPECT_NE(message_after("\"format\"", "format").find("no JSON"), std::string::npos);
 }
 
+TEST(AttributionText, CallsAMapAMap) {
+  EXPECT_EQ(attribution_text(test_manifest({test_source("scans", "mapper")})).rfind("This map was made from:\n", 0), 0u);
+  EXPECT_EQ(attribution_text(test_manifest({test_source("scans", "mapper"), test_source("houses", "osm")})).rfind("This prior was made from:\n", 0), 0u);
+}
+
 }  // namespace
 }  // namespace priormap

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include <priormap/core/events.hpp>
 #include <priormap/geodesy/map_frame.hpp>
 #include <priormap/mapping/prior_points.hpp>
 
@@ -37,5 +38,8 @@ struct Start {
 /// @param first_scan  tells how high above the ground the sensor is
 /// @throws UsageError when the pose is missing, contradictory or malformed; CrsError; Error when the prior lies elsewhere (says how far)
 Start find_start(const InitialPose& initial, const PriorPoints* prior, const PointCloud& first_scan, double prior_radius_m);
+
+/// Warns of a start far above or below the prior's ground there: heights that count from different surfaces.
+void warn_of_height(const Start& start, const PriorPoints& prior, const Events& events);
 
 }  // namespace priormap
