@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 
 #include <priormap/cli/tool_app.hpp>
 #include <priormap/mapping/run_mapper.hpp>
@@ -33,6 +34,8 @@ int main(int argc, char** argv) {
   app.options(options.initial);
   app.choice("--preset", options.preset, priormap::preset_names(), "Parameters of the method");
   app.options(options.map);
+  app.flag("--resume", options.resume, "Go on where a run with the same output was interrupted");
+  app.option("--checkpoint", options.checkpoint_s, {"time between states kept beside OUT from which --resume goes on; 0: none are kept", "s", 0, 1e6});
   app.flag("--no-map", options.no_map, "Write trajectories and report only");
   app.required("-o,--output", output, "OUT directory to write");
 
@@ -41,6 +44,10 @@ int main(int argc, char** argv) {
     options.prior = prior;
     options.output = output;
     if (dataset != "auto") options.dataset.name = dataset;
+    if (options.resume && context.overwrite == priormap::Overwrite::refuse && std::filesystem::exists(options.output / "run.json")) {
+      context.events.inform(output + " is whole already: there is nothing to resume");
+      return;
+    }
     print(priormap::run_mapper(options, context.threads, context.overwrite, context.events));
   });
 }

@@ -9,57 +9,14 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
-#include <mutex>
-#include <set>
 
 #include <priormap/core/error.hpp>
+
+#include "pending_outputs.hpp"
 
 namespace priormap {
 namespace fs = std::filesystem;
 namespace {
-
-// Temporary paths of outputs that are not committed yet. One list for the process: a signal arrives at the process, not at
-// the object that owns the file.
-class PendingOutputs {
- public:
-  void add(const fs::path& path) {
-    const std::lock_guard lock(mutex_);
-    paths_.insert(path);
-  }
-  void discard(const fs::path& path) {
-    const std::lock_guard lock(mutex_);
-    remove_tree(path);
-    paths_.erase(path);
-  }
-  void discard_all() {
-    const std::lock_guard lock(mutex_);
-    for (const fs::path& path : paths_) remove_tree(path);
-    paths_.clear();
-  }
-  /// Runs `rename` while no interruption can remove the path, then forgets the path.
-  void publish(const fs::path& path, const std::function<void()>& rename) {
-    const std::lock_guard lock(mutex_);
-    rename();
-    paths_.erase(path);
-  }
-
- private:
-  // Other threads may still be creating files inside.
-  static void remove_tree(const fs::path& path) {
-    std::error_code error;
-    for (int attempt = 0; attempt < 100; ++attempt) {
-      fs::remove_all(path, error);
-      if (!error) return;
-    }
-  }
-  std::mutex mutex_;
-  std::set<fs::path> paths_;
-};
-
-PendingOutputs& pending_outputs() {
-  static PendingOutputs instance;
-  return instance;
-}
 
 std::string cause(const char* what) { return std::string(what) + ": " + std::strerror(errno); }
 
@@ -77,12 +34,11 @@ void create_parent(const fs::path& target) {
   if (error) throw IoError(target.parent_path(), "cannot be created: " + error.message());
 }
 
-// In the target's own folder, so that the rename stays on one file system; keeps the extension, by which some writers
-// choose their format. `create` answers false with errno set.
-fs::path create_temporary(const fs::path& target, const std::function<bool(const fs::path&)>& create) {
+// Keeps the extension, by which some writers choose their format. `create` answers false with errno set.
+fs::path create_temporary(const fs::path& target, const fs::path& folder, const std::function<bool(const fs::path&)>& create) {
   static std::atomic<unsigned> serial = 0;
   for (;;) {
-    fs::path temporary = target.parent_path() / (".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(serial++) + "-" +
+    fs::path temporary = folder / (".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(serial++) + "-" +
                                                  target.filename().string());
     if (create(temporary)) return temporary;
     if (errno != EEXIST) throw IoError(target, cause("cannot be created"));
@@ -150,25 +106,24 @@ void check_directory_target(const fs::path& target, Overwrite overwrite, const s
 
 }  // namespace
 
-void discard_pending_outputs() { pending_outputs().discard_all(); }
-
 AtomicFile::AtomicFile(fs::path target, Overwrite overwrite) : target_(resolved(target)), overwrite_(overwrite) {
   check_file_target(target_, overwrite_);
   create_parent(target_);
-  temporary_ = create_temporary(target_, [](const fs::path& path) {
+  // In the target's own folder, so that the rename stays on one file system.
+  temporary_ = create_temporary(target_, target_.parent_path(), [](const fs::path& path) {
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     return descriptor >= 0 && ::close(descriptor) == 0;
   });
-  pending_outputs().add(temporary_);
+  PendingOutputs::instance().add(temporary_);
 }
 
 AtomicFile::~AtomicFile() {
-  if (!committed_) pending_outputs().discard(temporary_);
+  if (!committed_) PendingOutputs::instance().discard(temporary_);
 }
 
 void AtomicFile::commit() {
   sync_or_throw(temporary_, target_, ::fsync);
-  pending_outputs().publish(temporary_, [this] {
+  PendingOutputs::instance().publish(temporary_, [this] {
     if (overwrite_ == Overwrite::refuse) return rename_to_new_name(temporary_, target_);
     if (::rename(temporary_.c_str(), target_.c_str()) != 0) throw IoError(target_, cause("cannot be put in place"));
   });
@@ -176,16 +131,21 @@ void AtomicFile::commit() {
   sync_parent(target_);
 }
 
-AtomicDirectory::AtomicDirectory(fs::path target, Overwrite overwrite, std::string marker_file)
+AtomicDirectory::AtomicDirectory(fs::path target, Overwrite overwrite, std::string marker_file, Workplace workplace)
     : target_(resolved(target)), overwrite_(overwrite), marker_file_(std::move(marker_file)) {
   check_directory_target(target_, overwrite_, marker_file_);
   create_parent(target_);
-  temporary_ = create_temporary(target_, [](const fs::path& path) { return ::mkdir(path.c_str(), 0777) == 0; });
-  pending_outputs().add(temporary_);
+  fs::path folder = target_.parent_path();
+  if (workplace == Workplace::own_folder) {
+    folder /= "." + target_.filename().string() + ".unfinished";
+    if (::mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST) throw IoError(target_, cause("cannot be created"));
+  }
+  temporary_ = create_temporary(target_, folder, [](const fs::path& path) { return ::mkdir(path.c_str(), 0777) == 0; });
+  PendingOutputs::instance().add(temporary_);
 }
 
 AtomicDirectory::~AtomicDirectory() {
-  if (!committed_) pending_outputs().discard(temporary_);
+  if (!committed_) PendingOutputs::instance().discard(temporary_);
 }
 
 void AtomicDirectory::commit() {
@@ -193,12 +153,12 @@ void AtomicDirectory::commit() {
   sync_or_throw(temporary_, target_, ::syncfs);
   check_directory_target(target_, overwrite_, marker_file_);
   const bool replaces = fs::exists(target_);
-  pending_outputs().publish(temporary_, [&] {
+  PendingOutputs::instance().publish(temporary_, [&] {
     replaces ? exchange_directories(temporary_, target_) : rename_to_new_name(temporary_, target_);
   });
   committed_ = true;
   sync_parent(target_);
-  if (replaces) pending_outputs().discard(temporary_);
+  if (replaces) PendingOutputs::instance().discard(temporary_);
 }
 
 }  // namespace priormap

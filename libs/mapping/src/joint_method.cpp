@@ -31,6 +31,8 @@ class JointMethod : public MappingMethod {
 
   std::vector<EstimatedPose> finish(const ReadScan& read_again) override { return estimate_drive(records_, prior_, read_again, options_); }
 
+  void exchange(StateArchive& archive) override { archive(odometry_, tracker_, last_match_, records_); }
+
  private:
   Verdict verdict_by_prior() const {
     if (!last_match_ || last_match_->share < outside_share) return Verdict::outside_prior;

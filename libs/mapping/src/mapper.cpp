@@ -31,6 +31,13 @@ const MappedScan& Mapper::step(const Scan& scan) {
   return state_->scans.back();
 }
 
+std::size_t Mapper::num_scans() const { return state_->scans.size(); }
+
+void Mapper::exchange(StateArchive& archive) {
+  archive(state_->scans);
+  state_->method->exchange(archive);
+}
+
 std::vector<MappedScan> Mapper::finish(const ReadScan& read_again) {
   const std::vector<EstimatedPose> poses = state_->method->finish(read_again);
   for (std::size_t i = 0; i < poses.size(); ++i) {

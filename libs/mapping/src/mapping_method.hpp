@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <priormap/core/se3.hpp>
+#include <priormap/core/state_archive.hpp>
 #include <priormap/mapping/mapped_scan.hpp>
 #include <priormap/mapping/mapper.hpp>
 #include <priormap/mapping/mapper_options.hpp>
@@ -28,6 +29,8 @@ class MappingMethod {
   virtual void place(const Scan& scan, MappedScan& mapped) = 0;
   /// The poses of all scans from everything that is known at the end.
   virtual std::vector<EstimatedPose> finish(const ReadScan& read_again) = 0;
+  /// All that the scans so far have left, for a method made with the same options, prior and start.
+  virtual void exchange(StateArchive& archive) = 0;
 };
 
 std::unique_ptr<MappingMethod> make_paper_method(const PaperOptions& options, const std::optional<NearTiles>& prior, const FirstPose& first, int threads);

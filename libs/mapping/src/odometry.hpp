@@ -36,6 +36,7 @@ class Odometry {
   /// @param first_motion  T_previous_sensor at the first scan
   Odometry(const OdometryOptions& options, const Eigen::Isometry3d& first_motion);
   OdometryStep step(const SurfelCloud& scan);
+  void exchange(StateArchive& archive) { archive(local_map_, T_odom_before_last_, T_odom_last_, fits_, num_lost_); }
 
  private:
   Eigen::Isometry3d better_guess(const SurfelCloud& scan);

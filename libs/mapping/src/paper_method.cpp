@@ -36,6 +36,7 @@ class PaperMethod : public MappingMethod {
 
   void place(const Scan& scan, MappedScan& mapped) override;
   std::vector<EstimatedPose> finish(const ReadScan&) override;
+  void exchange(StateArchive& archive) override;
 
  private:
   bool accepts(const RegistrationResult& match) const { return match.num_correspondences > 0 && match.inlier_share() > options_.min_inlier_share; }
@@ -119,6 +120,11 @@ Verdict PaperMethod::verdict_of(const std::optional<RegistrationResult>& to_loca
   if (!moved_on) return Verdict::lost;
   if (to_prior && accepts(*to_prior)) return share < weak_share ? Verdict::weak : Verdict::anchored;
   return share < outside_share ? Verdict::outside_prior : Verdict::dead_reckoned;
+}
+
+void PaperMethod::exchange(StateArchive& archive) {
+  if (prior_) archive(*prior_);
+  archive(T_map_before_last_, T_map_last_, local_map_, graph_, pose_of_scan_, last_verdict_);
 }
 
 std::vector<EstimatedPose> PaperMethod::finish(const ReadScan&) {

@@ -68,6 +68,11 @@ void PriorTracker::begin_anew() {
   num_surfels_heard_ = 0;
 }
 
+void PriorTracker::exchange(StateArchive& archive) {
+  if (prior_) archive(*prior_);
+  archive(T_map_odom_, T_odom_last_, covariance_, prior_weight_, hypotheses_, num_heard_, num_surfels_heard_);
+}
+
 std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, const Eigen::Isometry3d& T_odom_sensor) {
   if (!prior_ || whole_scan.empty() || (T_odom_last_ && (T_odom_sensor.translation() - T_odom_last_->translation()).norm() < options_.keyframe_m)) return std::nullopt;
   const Eigen::Isometry3d guess = T_map_odom_ * T_odom_sensor;

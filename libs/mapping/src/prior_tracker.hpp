@@ -29,6 +29,7 @@ class PriorTracker {
   /// The odometry has a gap: the next scan is looked for around its pose as the first one was.
   void begin_anew();
   Eigen::Isometry3d T_map_odom() const { return T_map_odom_; }
+  void exchange(StateArchive& archive);
 
  private:
   struct Hypothesis {

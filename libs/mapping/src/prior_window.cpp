@@ -83,6 +83,12 @@ std::vector<TileKey> NearTiles::move_to(const Eigen::Vector3d& p_map) {
   return arrived;
 }
 
+void NearTiles::exchange(StateArchive& archive) {
+  std::vector<TileKey> held(held_.begin(), held_.end());
+  archive(held);
+  held_ = {held.begin(), held.end()};
+}
+
 std::vector<TileKey> NearTiles::lacking_at(const Eigen::Vector3d& p_map) const {
   auto keys = within(p_map, radius_m_);
   std::erase_if(keys, [&](const TileKey& key) { return held_.contains(key); });

@@ -11,6 +11,8 @@
 #include <priormap/mapping/motion.hpp>
 #include <priormap/mapping/read_ahead.hpp>
 
+#include "checkpoints.hpp"
+#include "run_inputs.hpp"
 #include "run_report.hpp"
 #include "trajectory_writer.hpp"
 
@@ -34,10 +36,6 @@ class Stopwatch {
   double last_ = 0;
 };
 
-struct ScanRange {
-  std::size_t first, last;
-};
-
 ScanRange range_of(const ScanSource& source, const RunOptions& options) {
   if (options.start >= source.size())
     throw UsageError("--start " + std::to_string(options.start) + " is beyond the end: there are " + std::to_string(source.size()) + " scans (counted from 0)");
@@ -52,20 +50,35 @@ Scan first_scan(const ScanSource& source, std::size_t index) {
   return scan;
 }
 
-/// The online pass: every scan once, in order. @return seconds that each took
-std::vector<double> map_scans(Mapper& mapper, const ScanSource& source, ScanRange range, const Events& events) {
-  ReadAhead scans(source, range.first, range.last);
-  std::vector<double> step_s;
+/// What the online pass leaves, and what is kept in its checkpoints.
+struct OnlinePass {
+  Mapper mapper;
+  std::vector<double> step_s;   // that each scan took
+  void exchange(StateArchive& archive) { archive(mapper, step_s); }
+};
+
+/// The online pass: every scan once, in order, from where `pass` stands.
+void map_scans(OnlinePass& pass, const ScanSource& source, ScanRange range, Checkpoints& checkpoints, const Events& events) {
+  ReadAhead scans(source, range.first + pass.step_s.size(), range.last);
   Stopwatch watch;
-  std::size_t num_empty = 0;
   while (const auto scan = scans.next()) {
-    num_empty += scan->points.empty();
-    mapper.step(*scan);
-    step_s.push_back(watch.lap());
-    events.advance("mapping", static_cast<double>(step_s.size()) / static_cast<double>(range.last - range.first));
+    pass.mapper.step(*scan);
+    pass.step_s.push_back(watch.lap());
+    events.advance("mapping", static_cast<double>(pass.step_s.size()) / static_cast<double>(range.last - range.first));
+    checkpoints.offer([&](StateArchive& archive) { pass.exchange(archive); });
   }
+}
+
+void resume(OnlinePass& pass, const Checkpoints& checkpoints, ScanRange range, const Events& events) {
+  if (checkpoints.restore([&](StateArchive& archive) { pass.exchange(archive); }))
+    events.inform("going on after " + std::to_string(pass.step_s.size()) + " of " + std::to_string(range.last - range.first) + " scans");
+  else
+    events.inform("no checkpoint of this output: beginning with the first scan");
+}
+
+void warn_of_empty_scans(const std::vector<MappedScan>& scans, const Events& events) {
+  const auto num_empty = std::count_if(scans.begin(), scans.end(), [](const MappedScan& scan) { return scan.num_points == 0; });
   if (num_empty) events.warn(std::to_string(num_empty) + " scans hold no points; the motion was carried on there");
-  return step_s;
 }
 
 void warn_of_bad_start(const MappedScan& first, const Events& events) {
@@ -74,7 +87,7 @@ void warn_of_bad_start(const MappedScan& first, const Events& events) {
               std::to_string(first.prior->num_correspondences) + " points near it fit): check the initial pose");
 }
 
-PriorManifest map_manifest(const RunOptions& options, const PriorPoints* prior, const Start& start, const ScanSource& source, const std::vector<MappedScan>& scans) {
+PriorManifest map_manifest(const RunOptions& options, const PriorPoints* prior, const Start& start, const ScanSource& source, ScanRange range) {
   PriorManifest manifest;
   if (start.crs) {
     manifest.crs = start.crs->name();
@@ -85,9 +98,9 @@ PriorManifest map_manifest(const RunOptions& options, const PriorPoints* prior, 
   scanned.id = "scans";
   scanned.kind = "mapper";
   scanned.file_name = options.scans.filename().string();
-  scanned.sha256 = listing_hash(source, scans);
+  scanned.sha256 = listing_hash(source, range);
   scanned.crs = manifest.crs;
-  scanned.facts = {{"scans", std::to_string(scans.size())}, {"dataset", source.info().dataset}, {"preset", options.preset}};
+  scanned.facts = {{"scans", std::to_string(range.last - range.first)}, {"dataset", source.info().dataset}, {"preset", options.preset}};
   if (prior) {
     scanned.facts.emplace_back("prior", prior->identity().name);
     for (const auto& text : prior->identity().attributions) scanned.attribution += (scanned.attribution.empty() ? "placed against: " : "; ") + text;
@@ -137,7 +150,8 @@ RunSummary summarise(const std::vector<MappedScan>& scans) {
 RunSummary run_mapper(const RunOptions& options, int threads, Overwrite overwrite, const Events& events) {
   Stopwatch watch;
   StageTimes times;
-  AtomicDirectory output(options.output, overwrite, "run.json");
+  using Begin = ResumableDirectory::Begin;
+  ResumableDirectory output(options.output, overwrite, "run.json", options.resume ? Begin::where_it_stood : Begin::anew);
   const MapperOptions method = MapperOptions::preset(options.preset);
   const auto source = open_scans(options.scans, options.dataset);
   const ScanRange range = range_of(*source, options);
@@ -146,26 +160,29 @@ RunSummary run_mapper(const RunOptions& options, int threads, Overwrite overwrit
   if (prior) warn_of_height(start, *prior, events);
   std::optional<NearTiles> near;
   if (prior) near.emplace(*prior, start.frame, method.prior_radius_m, threads);
-  Mapper mapper(method, near, {start.T_map_sensor, motion_at_start(*source, range.first, range.last)}, threads);
+  OnlinePass pass{Mapper(method, near, {start.T_map_sensor, motion_at_start(*source, range.first, range.last)}, threads), {}};
+  Checkpoints checkpoints(output, identity_of(options, method, *source, range, prior.get()), options.checkpoint_s, events);
+  if (options.resume) resume(pass, checkpoints, range, events);
   times.start_s = watch.lap();
 
-  const std::vector<double> step_s = map_scans(mapper, *source, range, events);
+  map_scans(pass, *source, range, checkpoints, events);
   times.online_s = watch.lap();
 
-  std::vector<MappedScan> scans = mapper.finish([&](std::size_t index) { return source->read(index); });
-  for (std::size_t i = 0; i < scans.size(); ++i) scans[i].step_s = step_s[i];
+  std::vector<MappedScan> scans = pass.mapper.finish([&](std::size_t index) { return source->read(index); });
+  for (std::size_t i = 0; i < scans.size(); ++i) scans[i].step_s = pass.step_s[i];
+  warn_of_empty_scans(scans, events);
   if (prior) warn_of_bad_start(scans.front(), events);
   times.estimate_s = watch.lap();
 
   RunSummary summary = summarise(scans);
   write_trajectories(output.temporary_path(), scans, start.frame);
   if (!options.no_map)
-    summary.num_map_points = write_map(output.temporary_path() / "map", *source, placed(scans), start.frame, map_manifest(options, prior.get(), start, *source, scans),
+    summary.num_map_points = write_map(output.temporary_path() / "map", *source, placed(scans), start.frame, map_manifest(options, prior.get(), start, *source, range),
                                        options.map, threads, events).num_points;
   times.map_s = watch.lap();
   summary.total_s = watch.seconds();
   summary.peak_memory_bytes = peak_memory_bytes();
-  write_run_report(output.temporary_path() / "run.json", {options, method, *source, prior.get(), start, scans, summary, times, threads});
+  write_run_report(output.temporary_path() / "run.json", {options, method, *source, range, prior.get(), start, scans, summary, times, threads});
   output.commit();
   return summary;
 }

@@ -4,9 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include <priormap/core/hash.hpp>
 #include <priormap/core/output_file.hpp>
 #include <priormap/core/version.hpp>
+
+#include "run_inputs.hpp"
 
 namespace priormap {
 namespace {
@@ -16,48 +17,10 @@ using Json = nlohmann::ordered_json;
 double rounded(double value, double step) { return std::round(value / step) * step; }
 double milliseconds(double seconds) { return rounded(seconds * 1e3, 1e-3); }
 
-/// Collects an options aggregate by its own description.
-struct JsonVisitor {
-  Json& object;
-  template <class Value>
-  void operator()(const std::string& name, const Value& value, const OptionField&) { object[name] = value; }
-};
-
-template <class Options>
-Json described(Options options) {
-  Json object = Json::object();
-  JsonVisitor visitor{object};
-  options.describe(visitor);
-  return object;
-}
-
 Json configuration(const RunFacts& facts) {
-  Json json = {{"preset", facts.options.preset}, {"threads", facts.threads}, {"start", facts.options.start}, {"limit", facts.options.limit}};
-  json["method"] = described(facts.method);
-  json["map"] = facts.options.no_map ? Json() : described(facts.options.map);
-  json["initial_pose_from"] = !facts.options.initial.lon_lat_deg.empty() ? "longitude and latitude" : !facts.options.initial.pose.empty() ? "pose" : "origin";
+  Json json = configuration_of(facts.options, facts.method);
+  json["threads"] = facts.threads;
   return json;
-}
-
-Json scans_input(const RunFacts& facts) {
-  const auto& info = facts.source.info();
-  return {{"name", facts.options.scans.filename().empty() ? facts.options.scans.parent_path().filename().string() : facts.options.scans.filename().string()},
-          {"dataset", info.dataset},
-          {"available", facts.source.size()},
-          {"stamps", info.stamps},
-          {"point_times", info.point_times},
-          {"vertical_angle_correction_deg", info.vertical_angle_correction_deg},
-          {"names_and_sizes_sha256", listing_hash(facts.source, facts.scans)}};
-}
-
-Json prior_input(const PriorPoints* prior) {
-  if (!prior) return nullptr;
-  const auto& identity = prior->identity();
-  return {{"name", identity.name},
-          {"sha256", identity.sha256},
-          {"points", identity.num_points},
-          {"crs", prior->crs() ? Json(prior->crs()->name()) : Json()},
-          {"attributions", identity.attributions}};
 }
 
 Json frame(const Start& start) {
@@ -121,21 +84,12 @@ Json totals(const RunFacts& facts) {
 
 }  // namespace
 
-std::string listing_hash(const ScanSource& source, const std::vector<MappedScan>& scans) {
-  Sha256 hash;
-  for (const auto& scan : scans) {
-    const auto file = source.file(scan.index);
-    hash.update(file.filename().string() + " " + std::to_string(std::filesystem::file_size(file)) + "\n");
-  }
-  return hash.hex_digest();
-}
-
 void write_run_report(const std::filesystem::path& file, const RunFacts& facts) {
   Json rows = Json::array();
   for (const auto& scan : facts.scans) rows.push_back(scan_row(scan));
   const Json report = {{"generator", "mapper " + std::string(version)},
                        {"configuration", configuration(facts)},
-                       {"inputs", {{"scans", scans_input(facts)}, {"prior", prior_input(facts.prior)}}},
+                       {"inputs", {{"scans", scans_input(facts.options, facts.source, facts.range)}, {"prior", prior_input(facts.prior)}}},
                        {"frame", frame(facts.start)},
                        {"totals", totals(facts)},
                        {"scans", rows}};

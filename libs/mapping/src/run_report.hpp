@@ -9,6 +9,8 @@
 #include <priormap/mapping/run_mapper.hpp>
 #include <priormap/mapping/scan_source.hpp>
 
+#include "run_inputs.hpp"
+
 namespace priormap {
 
 /// Wall times of the stages [s].
@@ -23,6 +25,7 @@ struct RunFacts {
   const RunOptions& options;
   const MapperOptions& method;
   const ScanSource& source;
+  ScanRange range;
   const PriorPoints* prior;          ///< null: odometry
   const Start& start;
   const std::vector<MappedScan>& scans;
@@ -33,8 +36,5 @@ struct RunFacts {
 
 /// run.json after schemas/run-report.schema.json. @throws IoError
 void write_run_report(const std::filesystem::path& file, const RunFacts& facts);
-
-/// SHA-256 over "name size" of the mapped scans: tells recordings apart without reading them whole.
-std::string listing_hash(const ScanSource& source, const std::vector<MappedScan>& scans);
 
 }  // namespace priormap

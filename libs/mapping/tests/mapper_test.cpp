@@ -163,5 +163,44 @@ TEST_F(Street, ThreadsDoNotChangeTheResult) {
   for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(runs[0][k].T_map_sensor.matrix(), runs[1][k].T_map_sensor.matrix());
 }
 
+/// Cut off after any scan and gone on with in a mapper of its own, a drive ends as if it had not been.
+TEST_F(Street, AMapperGoesOnFromItsState) {
+  const test::TiledPoints tiles(world_, 10);
+  const NearTiles prior(tiles, MapFrame::local(), 20);   // tiles come and go
+  std::vector<Scan> drive;
+  for (int k = 0; k < num_scans; ++k) drive.push_back(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+  const auto read = [&](std::size_t k) { return drive[k]; };
+  for (const char* preset : {"default", "paper"}) {
+    for (const auto& with : {std::optional<NearTiles>(prior), std::optional<NearTiles>()}) {
+      const auto begin = [&] { return Mapper(MapperOptions::preset(preset), with, {pose(0.3, -0.2, 1.8, 0.02), truth(0).inverse() * truth(1)}, 1); };
+      const auto drive_on = [&](Mapper& mapper, int first, int last) {
+        for (int k = first; k < last; ++k) mapper.step(drive[static_cast<std::size_t>(k)]);
+      };
+      Mapper whole = begin();
+      drive_on(whole, 0, num_scans);
+      const auto expected = whole.finish(read);
+      for (const int cut : {1, 5, num_scans}) {
+        Mapper half = begin(), rest = begin();
+        drive_on(half, 0, cut);
+        StateArchive out;
+        half.exchange(out);
+        StateArchive in(out.take());
+        rest.exchange(in);
+        in.expect_end();
+        EXPECT_EQ(rest.num_scans(), static_cast<std::size_t>(cut));
+        drive_on(rest, cut, num_scans);
+        const auto scans = rest.finish(read);
+        ASSERT_EQ(scans.size(), expected.size());
+        for (std::size_t k = 0; k < scans.size(); ++k) {
+          EXPECT_EQ(scans[k].T_map_sensor.matrix(), expected[k].T_map_sensor.matrix()) << preset << ", cut " << cut << ", scan " << k;
+          EXPECT_EQ(scans[k].T_map_online.matrix(), expected[k].T_map_online.matrix());
+          EXPECT_EQ(scans[k].covariance, expected[k].covariance);
+          EXPECT_EQ(scans[k].verdict, expected[k].verdict);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace priormap

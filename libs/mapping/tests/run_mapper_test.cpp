@@ -8,6 +8,7 @@
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
 
+#include <priormap/core/error.hpp>
 #include <priormap/mapping/run_mapper.hpp>
 #include <priormap/pointcloud/point_formats.hpp>
 
@@ -98,6 +99,75 @@ TEST_F(Run, TheSchemaSeesAFault) {
   auto broken = report();
   broken["scans"][1]["verdict"] = "fine";
   EXPECT_NE(schema_violations(broken), "");
+}
+
+/// A run that ends when it has mapped `num_scans`, as if by a fault.
+void interrupted_run(const RunOptions& options, int num_scans) {
+  Events events;
+  events.progress = [&](const std::string& stage, double) {
+    if (stage == "mapping" && --num_scans == 0) throw Error("interrupted");
+  };
+  EXPECT_THROW(run_mapper(options, 1, Overwrite::refuse, events), Error);
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST_F(Run, GoesOnFromItsCheckpoint) {
+  options_.checkpoint_s = 1e-9;
+  const std::filesystem::path unfinished = options_.output.parent_path() / ".out.unfinished";
+  for (const char* preset : {"paper", "default"}) {
+    options_.preset = preset;
+    options_.output = folder_.path() / (std::string("whole-") + preset);
+    run_mapper(options_, 1, Overwrite::refuse, {});
+    const RunOptions uncut = options_;
+    options_.output = folder_.path() / "out";
+    interrupted_run(options_, 2);
+    EXPECT_TRUE(std::filesystem::exists(unfinished / "checkpoint"));
+    EXPECT_FALSE(std::filesystem::exists(options_.output));
+
+    std::vector<std::string> told;
+    Events events;
+    events.info = [&](const std::string& text) { told.push_back(text); };
+    options_.resume = true;
+    run_mapper(options_, 1, Overwrite::refuse, events);
+    ASSERT_FALSE(told.empty());
+    EXPECT_EQ(told.front(), "going on after 1 of 3 scans");
+    for (const char* file : {"trajectory.csv", "poses_online_tum.txt", "map/prior.json", "map/tiles.idx"}) EXPECT_EQ(text_of(options_.output / file), text_of(uncut.output / file)) << file;
+    EXPECT_FALSE(std::filesystem::exists(unfinished));
+    std::filesystem::remove_all(options_.output);
+    options_.resume = false;
+  }
+}
+
+TEST_F(Run, ACheckpointOfAnotherRunIsRefusedByName) {
+  options_.checkpoint_s = 1e-9;
+  options_.resume = true;
+  interrupted_run(options_, 2);
+  const auto refusal = [&](RunOptions other) {
+    try {
+      run_mapper(other, 1, Overwrite::refuse, {});
+    } catch (const UsageError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  RunOptions other = options_;
+  other.preset = "default";
+  EXPECT_NE(refusal(other).find("preset was \"paper\", is \"default\""), std::string::npos) << refusal(other);
+  other = options_;
+  other.limit = 2;
+  EXPECT_NE(refusal(other).find("names_and_sizes_sha256"), std::string::npos) << refusal(other);
+  other = options_;
+  other.map.voxel_m *= 2;
+  EXPECT_NE(refusal(other).find("map/map-voxel"), std::string::npos) << refusal(other);
+  other = options_;
+  other.initial.pose = {0, 0, 0, 0, 0, 0, 1};
+  EXPECT_NE(refusal(other).find("initial pose/initial-pose"), std::string::npos) << refusal(other);
+  test::write_raw(options_.scans / "2.bin", std::vector<float>{1, 2, 3, 0});
+  EXPECT_NE(refusal(options_).find("names_and_sizes_sha256"), std::string::npos) << refusal(options_);
 }
 
 }  // namespace

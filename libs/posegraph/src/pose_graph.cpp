@@ -282,6 +282,14 @@ void PoseGraph::add_piece_factor(PoseId pose, PieceId piece, const Eigen::Isomet
   piece_factors_.push_back({pose, piece, T_map_sensor, equations});
 }
 
+void PoseGraph::exchange(StateArchive& archive) {
+  archive(poses_, absolute_, between_, pieces_, piece_factors_);
+  if (!archive.reading()) return;
+  factors_of_.assign(poses_.size(), {});
+  for (std::size_t f = 0; f < absolute_.size(); ++f) factors_of_.at(absolute_[f].id).absolute.push_back(f);
+  for (std::size_t f = 0; f < between_.size(); ++f) factors_of_.at(std::max(between_[f].a, between_[f].b)).between.push_back(f);
+}
+
 OptimizeSummary PoseGraph::optimize_last(std::size_t window) {
   const std::size_t begin = size() - std::min(window, size());
   std::size_t oldest = begin;

@@ -224,4 +224,31 @@ TEST(PoseGraph, RefusesUnknownPosesAndBrokenInformation) {
   EXPECT_THROW(graph.add_absolute(0, pose(0, 0, 0), Matrix6d::Constant(std::nan(""))), UsageError);
 }
 
+TEST(PoseGraph, ACopyThroughItsStateGoesOnAlike) {
+  const auto truth = drive(60);
+  const auto add = [&](PoseGraph& graph, std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      std::mt19937 random{unsigned(k)};
+      graph.add_pose(noisy(truth[k], random, 0.01, 0.1));
+      if (k > 0) graph.add_between(k - 1, k, noisy(truth[k - 1].inverse() * truth[k], random, 0.001, 0.02), information(0.001, 0.02));
+      if (k % 7 == 0) graph.add_absolute(k, noisy(truth[k], random, 0.002, 0.1), information(0.002, 0.1));
+      graph.optimize_last(2);
+    }
+  };
+  PoseGraph whole, half, rest;
+  add(whole, 0, 60);
+  add(half, 0, 30);
+  StateArchive out;
+  half.exchange(out);
+  StateArchive in(out.take());
+  rest.exchange(in);
+  in.expect_end();
+  add(rest, 30, 60);
+  whole.optimize();
+  rest.optimize();
+  ASSERT_EQ(rest.size(), whole.size());
+  for (std::size_t k = 0; k < whole.size(); ++k) EXPECT_EQ(rest.pose(k).matrix(), whole.pose(k).matrix()) << k;
+  EXPECT_EQ(rest.marginal_covariances(), whole.marginal_covariances());
+}
+
 }  // namespace

@@ -39,6 +39,13 @@ void SurfelMap::Block::merge(std::span<const Item> items, std::span<const std::u
   remake_shapes(float(options.voxel_m));
 }
 
+void SurfelMap::Block::exchange(StateArchive& archive, const SurfelMapOptions& options) {
+  archive(entries_);
+  if (!archive.reading()) return;
+  order_by_voxel();
+  remake_shapes(float(options.voxel_m));
+}
+
 void SurfelMap::Block::order_by_voxel() {
   std::array<std::uint16_t, voxels_a_block + 1> next{};
   for (const Entry& entry : entries_) ++next[entry.voxel + 1u];

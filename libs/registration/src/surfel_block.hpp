@@ -26,6 +26,8 @@ class SurfelMap::Block {
   /// Merges the items in order; the shapes of what changed are made anew.
   void merge(std::span<const Item> items, std::span<const std::uint32_t> order, const SurfelMapOptions& options);
 
+  void exchange(StateArchive& archive, const SurfelMapOptions& options);
+
   std::size_t size() const { return entries_.size(); }
   const Surfel& surfel(std::size_t i) const { return entries_[i].surfel; }
   const SurfelShape& shape(std::size_t i) const { return shapes_[i]; }

@@ -113,6 +113,12 @@ void SurfelMap::remove_beyond(const Eigen::Vector3d& center, double distance_m) 
   for (const Block& block : blocks_) size_ += block.size();
 }
 
+void SurfelMap::exchange(StateArchive& archive) {
+  archive(index_, size_);
+  if (archive.reading()) blocks_ = std::vector<Block>(index_.size());
+  for (Block& block : blocks_) block.exchange(archive, options_);
+}
+
 std::optional<SurfelMap::Match> SurfelMap::nearest(const Eigen::Vector3d& query, InstructionSet set) const {
   return SurfelMapView(*this).nearest(query, kernels_for(set));
 }

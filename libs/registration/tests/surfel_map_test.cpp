@@ -144,4 +144,39 @@ TEST(SurfelMap, ForgetsBlocksThatAreFarAndKeepsTheRest) {
 
 TEST(SurfelMap, RefusesAVoxelWithoutSize) { EXPECT_THROW(SurfelMap({.voxel_m = 0}), UsageError); }
 
+/// What a map holds decides what it becomes: a copy through bytes goes on as the map itself, surfel by surfel.
+TEST(SurfelMap, ACopyThroughItsStateGoesOnAlike) {
+  const street::World world = street::town(80, 2);
+  ScanReducer reducer(1.0);
+  const auto drive_on = [&](SurfelMap& map, int first, int last) {
+    for (int k = first; k < last; ++k) {
+      const Eigen::Isometry3d T = street::pose(8.0 * k, 0.3 * k, 1.8, 0.03 * k);
+      map.insert(reducer.reduce(street::scan(world, T, {.columns = 300}, unsigned(k))), T);
+      map.remove_beyond(T.translation(), 40);
+    }
+  };
+  SurfelMap whole, half, rest;
+  whole.insert(street::sample(world, 1.0, 0.1f));
+  half.insert(street::sample(world, 1.0, 0.1f));
+  drive_on(whole, 0, 8);
+  drive_on(half, 0, 4);
+  StateArchive out;
+  half.exchange(out);
+  StateArchive in(out.take());
+  rest.exchange(in);
+  in.expect_end();
+  drive_on(rest, 4, 8);
+  ASSERT_EQ(rest.size(), whole.size());
+  EXPECT_EQ(rest.points().xyz, whole.points().xyz);
+  EXPECT_EQ(rest.points().normal, whole.points().normal);
+  for (const Eigen::Vector3f& p : whole.points().xyz) {
+    const auto a = whole.nearest(p.cast<double>() + Eigen::Vector3d::Constant(0.1)), b = rest.nearest(p.cast<double>() + Eigen::Vector3d::Constant(0.1));
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (!a) continue;
+    EXPECT_EQ(a->mean, b->mean);
+    EXPECT_EQ(a->shape.sigma_m, b->shape.sigma_m);
+    EXPECT_EQ(a->second_distance_m, b->second_distance_m);
+  }
+}
+
 }  // namespace

@@ -83,4 +83,38 @@ TEST(VoxelHashMap, RefusesOptionsWithoutMeaning) {
   EXPECT_THROW(VoxelHashMap({.max_points = 0}), UsageError);
 }
 
+TEST(VoxelHashMap, ACopyThroughItsStateGoesOnAlike) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> u(-5, 5);
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 20000; ++i) {
+    const double x = u(random), y = u(random), z = u(random);
+    points.emplace_back(0.01 * i + x, y, z);
+  }
+  const auto insert = [&](VoxelHashMap& map, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      map.insert(points[i]);
+      if (i % 1000 == 0) map.remove_beyond(points[i], 20);
+    }
+  };
+  VoxelHashMap whole, half, rest;
+  insert(whole, 0, points.size());
+  insert(half, 0, points.size() / 2);
+  StateArchive out;
+  half.exchange(out);
+  StateArchive in(out.take());
+  rest.exchange(in);
+  in.expect_end();
+  insert(rest, points.size() / 2, points.size());
+  EXPECT_EQ(rest.size(), whole.size());
+  EXPECT_EQ(rest.points().xyz, whole.points().xyz);
+  for (const Eigen::Vector3d& p : points) {
+    const auto a = whole.nearest(p), b = rest.nearest(p);
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (a) {
+      EXPECT_EQ(a->position, b->position);
+    }
+  }
+}
+
 }  // namespace

@@ -26,16 +26,20 @@ class AtomicFile {
   bool committed_ = false;
 };
 
+/// Where a directory is made: beside its target, or in a folder .NAME.unfinished there (see ResumableDirectory), which stays.
+enum class Workplace { beside, own_folder };
+
 /// A directory that appears under its name only when it is whole. An existing directory is replaced only with
 /// `Overwrite::allow` and only when it is empty or holds `marker_file` (so that a tool never empties a stranger's folder).
 class AtomicDirectory {
  public:
   /// @throws IoError as above.
-  AtomicDirectory(std::filesystem::path target, Overwrite overwrite, std::string marker_file);
+  AtomicDirectory(std::filesystem::path target, Overwrite overwrite, std::string marker_file, Workplace workplace = Workplace::beside);
   ~AtomicDirectory();
   AtomicDirectory(const AtomicDirectory&) = delete;
   AtomicDirectory& operator=(const AtomicDirectory&) = delete;
 
+  const std::filesystem::path& target() const { return target_; }
   const std::filesystem::path& temporary_path() const { return temporary_; }
   /// Renames into place; the replaced directory is removed last. @throws IoError
   void commit();

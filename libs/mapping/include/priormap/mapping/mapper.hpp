@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include <priormap/core/state_archive.hpp>
 #include <priormap/mapping/mapped_scan.hpp>
 #include <priormap/mapping/mapper_options.hpp>
 #include <priormap/mapping/prior_window.hpp>
@@ -32,6 +33,10 @@ class Mapper {
 
   /// Places one scan. @return where it was taken, as far as is known when it comes
   const MappedScan& step(const Scan& scan);
+
+  std::size_t num_scans() const;
+  /// All that the scans so far have left, for a mapper made with the same options, prior and start.
+  void exchange(StateArchive& archive);
 
   /// All scans with their final poses and covariances. @param read_again  for comparing scans with the prior anew at better poses
   std::vector<MappedScan> finish(const ReadScan& read_again);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <priormap/core/parallel.hpp>
+#include <priormap/core/state_archive.hpp>
 #include <priormap/geodesy/map_frame.hpp>
 #include <priormap/mapping/prior_points.hpp>
 #include <priormap/mapping/tile_prefetch.hpp>
@@ -33,6 +34,7 @@ class NearTiles {
   const MapFrame& frame() const { return frame_; }
   int threads() const { return threads_; }   ///< to load with when much is lacking
   std::size_t count() const { return held_.size(); }
+  void exchange(StateArchive& archive);
 
  private:
   double drop_m() const;
@@ -62,6 +64,8 @@ class PriorWindow {
     return map_;
   }
   std::size_t tiles_held() const { return tiles_.count(); }
+  /// What is there: it comes of the whole way so far.
+  void exchange(StateArchive& archive) { archive(tiles_, map_); }
 
  private:
   static constexpr double ahead_m = 50;

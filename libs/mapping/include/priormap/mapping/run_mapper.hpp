@@ -25,6 +25,8 @@ struct RunOptions {
   std::string preset = "default";
   std::uint64_t start = 0;                ///< scans to leave out at the beginning
   std::uint64_t limit = 0;                ///< scans to map at most; 0: all
+  bool resume = false;                    ///< goes on where an interrupted run stood
+  double checkpoint_s = 5;                ///< between states kept for that; 0: none
   bool no_map = false;
   MapOptions map;
   std::filesystem::path output;
@@ -41,7 +43,8 @@ struct RunSummary {
   std::size_t num_anchored = 0, num_weak = 0, num_dead_reckoned = 0, num_outside_prior = 0, num_lost = 0;
 };
 
-/// Maps the recording and writes the output directory, whole or not at all.
+/// Maps the recording and writes the output directory, whole or not at all. A run that was killed goes on from its last checkpoint with `resume` and gives the same files (but for
+/// times in run.json).
 /// @throws IoError, FormatError, CrsError, UsageError, each with one line for the user
 RunSummary run_mapper(const RunOptions& options, int threads, Overwrite overwrite, const Events& events);
 

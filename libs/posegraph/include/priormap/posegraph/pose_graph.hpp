@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <priormap/core/se3.hpp>
+#include <priormap/core/state_archive.hpp>
 #include <span>
 #include <vector>
 
@@ -95,6 +96,9 @@ class PoseGraph {
   OptimizeSummary optimize_last(std::size_t window = 1);
   /// All poses over all factors. A part of the graph without any absolute factor has its first pose held.
   OptimizeSummary optimize();
+
+  /// Poses, factors and pieces, for a graph made with the same options.
+  void exchange(StateArchive& archive);
 
   std::size_t size() const { return poses_.size(); }
   const Eigen::Isometry3d& pose(PoseId id) const { return poses_.at(id); }

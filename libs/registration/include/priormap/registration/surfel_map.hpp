@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <priormap/core/state_archive.hpp>
 #include <priormap/pointcloud/point_cloud.hpp>
 #include <priormap/pointcloud/surface_patches.hpp>
 #include <priormap/registration/instruction_set.hpp>
@@ -48,6 +49,9 @@ class SurfelMap {
   void insert(const SurfelCloud& scan, const Eigen::Isometry3d& T_map_scan);
   /// Drops each block whose centre is farther than `distance_m` from `center`.
   void remove_beyond(const Eigen::Vector3d& center, double distance_m);
+
+  /// Its surfels, for a map made with the same options.
+  void exchange(StateArchive& archive);
 
   struct Match {
     Eigen::Vector3d mean;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
+#include <priormap/core/state_archive.hpp>
 #include <priormap/pointcloud/point_cloud.hpp>
 #include <priormap/registration/voxel_index.hpp>
 #include <vector>
@@ -42,6 +43,9 @@ class VoxelHashMap {
   void remove_beyond(const Eigen::Vector3d& center, double distance_m);
   /// The nearest point within the 27 voxels around `query`; none when they are empty.
   std::optional<Neighbor> nearest(const Eigen::Vector3d& query) const;
+
+  /// Its points, for a map made with the same options.
+  void exchange(StateArchive& archive) { archive(index_, counts_, in_voxel_, size_); }
 
   std::size_t size() const { return size_; }  ///< points held
   bool empty() const { return size_ == 0; }

@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <priormap/core/state_archive.hpp>
 #include <vector>
 
 namespace priormap {
@@ -29,6 +30,14 @@ class VoxelIndex {
     for (std::size_t i = 0; i < keep.size(); ++i) keys_[i] = keys_[keep[i]];
     keys_.resize(keep.size());
     place(slots_.size());
+  }
+
+  void exchange(StateArchive& archive) {
+    archive(keys_);
+    if (!archive.reading()) return;
+    std::size_t slots = 64;
+    while (2 * keys_.size() > slots) slots *= 2;
+    place(slots);
   }
 
   const std::vector<Eigen::Vector3i>& keys() const { return keys_; }
