@@ -58,6 +58,28 @@ TEST(CommonFrame, OfOneGeoreferencedSideNeedsAnAlignment) {
   EXPECT_NEAR(evaluation.ate.position_m.max, 500 * 4.8e-4, 0.01) << "the grid is 0.48 m a kilometre short of the ground";
 }
 
+TEST(CommonFrame, TrajectoriesOfDifferentPlacesAreNotComparedUnaligned) {
+  const Trajectory reference = kilometre_east(500000);
+  Trajectory elsewhere = kilometre_east(944000), near = kilometre_east(502500);
+  try {
+    evaluate_trajectory(reference, elsewhere, {}, {});
+    FAIL() << "444 km apart";
+  } catch (const FormatError& error) {
+    const std::string message = error.what();
+    for (const char* part : {"443 km apart", "reference begins at longitude 9.0000, latitude 48.39", "estimate at longitude 14.9", "--crs", "--align"})
+      EXPECT_NE(message.find(part), std::string::npos) << part << " in " << message;
+  }
+  EXPECT_NO_THROW(evaluate_trajectory(reference, near, {}, {})) << "an estimate may be lost";
+  EvaluationOptions options;
+  options.align = Alignment::first;
+  EXPECT_NO_THROW(evaluate_trajectory(reference, elsewhere, options, {}));
+
+  const Trajectory metric = made::straight(11, 100);
+  Trajectory far = metric;
+  made::transform(far, made::pose(5000, 0, 0));
+  EXPECT_THROW(evaluate_trajectory(metric, far, {}, {}), FormatError);
+}
+
 TEST(CommonFrame, RefusesGeographicCoordinates) {
   Trajectory reference = kilometre_east(500000), estimate = reference;
   reference.crs = estimate.crs = "EPSG:4326";
