@@ -58,8 +58,8 @@ bool northing_comes_first(const std::string& srs_name, const Crs& crs, const Eig
 
 }  // namespace
 
-ModelFrames::ModelFrames(const PriorOptions& options, const BuildingModel& first, const std::string& file, const Events& events) : options_(options) {
-  const InputCrs input = resolve_input_crs(options, declared_crs(first.srs_name, file, !options.source_crs.empty()), file);
+ModelFrames::ModelFrames(const PriorOptions& options, const BuildingModel& first, const std::string& file, const Events& events) : options_(options), events_(events) {
+  const InputCrs input = resolve_input_crs(options, declared_crs(first.srs_name, file, !options.source_crs.empty()), file, {});
   Eigen::Vector3d place = first_point(first, file);
   if (options.source_crs.empty() && northing_comes_first(first.srs_name, input.crs, place)) place = swapped(place);
   const std::optional<GeoPoint> middle = reach(input.crs.horizontal(), place);
@@ -69,7 +69,7 @@ ModelFrames::ModelFrames(const PriorOptions& options, const BuildingModel& first
 
 ModelFrames::Frame& ModelFrames::frame_of(const BuildingModel& model, const std::string& file) {
   if (const auto known = frames_.find(model.srs_name); known != frames_.end()) return known->second;
-  const InputCrs input = resolve_input_crs(options_, declared_crs(model.srs_name, file, !options_.source_crs.empty()), file);
+  const InputCrs input = resolve_input_crs(options_, declared_crs(model.srs_name, file, !options_.source_crs.empty()), file, events_);
   Frame frame{options_.source_crs.empty() && northing_comes_first(model.srs_name, input.crs, first_point(model, file)), std::nullopt,
               {input.crs.name(), input.assumed_vertical, {}}};
   Transformer transformer(input.crs, *prior_);

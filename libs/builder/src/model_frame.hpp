@@ -36,6 +36,7 @@ class ModelFrames {
   Frame& frame_of(const BuildingModel& model, const std::string& file);
 
   const PriorOptions& options_;
+  const Events& events_;
   std::optional<Crs> prior_;
   std::map<std::string, Frame> frames_;   ///< by srsName
 };

@@ -75,7 +75,7 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
     throw UsageError("--heights-from counts from the ground: give --terrain or --ground-height too");
 
   std::vector<InputCrs> outlines;
-  for (std::size_t i = 0; i < input.files.size(); ++i) outlines.push_back(resolve_input_crs(prior_options, input.crs[i], input.files[i].path.string()));
+  for (std::size_t i = 0; i < input.files.size(); ++i) outlines.push_back(resolve_input_crs(prior_options, input.crs[i], input.files[i].path.string(), events));
   const InputCrs& first = outlines.front();
   const std::optional<NamedRaster> terrain = named_raster(outline_options.terrain, first), surface = named_raster(outline_options.heights_from, first);
   std::vector<InputCrs> with_heights;

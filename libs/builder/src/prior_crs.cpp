@@ -1,8 +1,12 @@
 #include <priormap/builder/prior_crs.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
 
 #include <priormap/core/error.hpp>
+#include <priormap/geodesy/transformer.hpp>
 
 namespace priormap {
 namespace {
@@ -48,6 +52,46 @@ Crs default_horizontal(const std::vector<InputCrs>& inputs, const GeoPoint& midd
   return Crs::utm_zone(middle.lon_deg, middle.lat_deg, etrs89);
 }
 
+std::string degrees_text(double west, double east) {
+  std::ostringstream text;
+  text << std::setprecision(4) << west << " to " << east;
+  return text.str();
+}
+
+/// "; EPSG:25832 fits there", where a zone does.
+std::string fitting_zone(const Crs& asked, const GeoPoint& place) {
+  constexpr double southernmost_deg = -80, northernmost_deg = 84;
+  if (place.lat_deg < southernmost_deg || place.lat_deg > northernmost_deg) return "";
+  return "; " + Crs::utm_zone(place.lon_deg, place.lat_deg, is_etrs89(asked)).name() + " fits there";
+}
+
+/// The middle of --bbox, else of the inputs.
+GeoPoint place_of_data(const PriorOptions& options, const GeoPoint& middle) {
+  if (options.bbox.empty()) return middle;
+  const std::vector<double>& b = options.bbox;
+  const Transformer to_lon_lat(parse_option("--bbox-crs", options.bbox_crs).horizontal(), Crs::parse("EPSG:4326"));
+  const Eigen::Vector3d p = to_lon_lat.forward({0.5 * (b[0] + b[2]), 0.5 * (b[1] + b[3]), 0});
+  return p.allFinite() ? GeoPoint{p.y(), p.x(), 0} : middle;
+}
+
+/// A CRS that is asked for where it does not belong is a slip: mostly the wrong zone. Neighbouring zones are in use side by side, so
+/// that is said and done as asked; where a metre of the grid is no metre any more, spacing and sigmas would be wrong.
+void check_fits(const Crs& asked, const GeoPoint& place, const Events& events) {
+  constexpr double most_distortion = 0.01, border_deg = 0.25;
+  std::ostringstream where;
+  where << std::fixed << std::setprecision(3) << "longitude " << place.lon_deg << ", latitude " << place.lat_deg;
+  const std::string name = "--crs " + asked.name() + " (" + asked.horizontal().human_name() + ")";
+  if (const double distortion = asked.length_distortion(place); !(distortion <= most_distortion)) {
+    std::ostringstream how;
+    if (std::isfinite(distortion)) how << "makes lengths wrong by " << std::setprecision(2) << 100 * distortion << " %"; else how << "does not reach";
+    throw CrsError(name + " " + how.str() + " where the data lie (" + where.str() + ")" + fitting_zone(asked, place));
+  }
+  const std::optional<AreaOfUse> area = asked.area_of_use();
+  if (!area || area->degrees_outside(place) <= border_deg) return;
+  events.warn(name + " is meant for longitudes " + degrees_text(area->west_deg, area->east_deg) + " and latitudes " + degrees_text(area->south_deg, area->north_deg) +
+              ", the data lie at " + where.str() + fitting_zone(asked, place));
+}
+
 const char* remedy = "; declare them with --source-crs H+V (such as EPSG:27700+5701) or --assume-vertical V (such as EPSG:5773)";
 
 /// The vertical part that heights are declared in by all inputs alike; nothing where none declares any.
@@ -75,11 +119,22 @@ Crs with_heights_in_metres(const Crs& horizontal, const Crs& vertical) {
   return crs;
 }
 
+/// Completing what a file says is no contradiction.
+bool contradicts(const Crs& named, const Crs& declared) {
+  if (named.is_vertical()) return false;   // refused below
+  if (!named.horizontal().equivalent_to(declared.horizontal())) return true;
+  return declared.has_vertical() && (!named.has_vertical() || !named.equivalent_to(declared));
+}
+
 }  // namespace
 
-InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>& declared, const std::string& file) {
+InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>& declared, const std::string& file, const Events& events) {
   std::optional<Crs> crs = declared;
-  if (!options.source_crs.empty()) crs = parse_option("--source-crs", options.source_crs);
+  if (!options.source_crs.empty()) {
+    crs = parse_option("--source-crs", options.source_crs);
+    if (declared && contradicts(*crs, *declared))
+      events.warn(file + ": says that it is in " + declared->name() + "; read as " + crs->name() + " by --source-crs");
+  }
   if (!crs) throw CrsError(file + ": has no coordinate reference system; name it with --source-crs, such as EPSG:25832+7837");
   if (crs->is_vertical()) throw CrsError(file + ": " + crs->name() + " has heights only; a horizontal CRS is needed too, such as EPSG:25832+7837");
   if (options.assume_vertical.empty() || crs->has_vertical()) return {*crs, "", file};
@@ -91,6 +146,7 @@ InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>
 Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const GeoPoint& middle, const Events& events) {
   const Crs asked = options.crs.empty() ? default_horizontal(inputs, middle) : parse_option("--crs", options.crs);
   check_projected_in_metres(asked);
+  if (!options.crs.empty()) check_fits(asked, place_of_data(options, middle), events);
   if (asked.has_vertical()) {
     for (const InputCrs& input : inputs)
       if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, but the prior is asked for in " + asked.name() + remedy);

@@ -48,11 +48,11 @@ std::string content_hash(const fs::path& file) {
 bool overlap(const Bounds2& a, const Bounds2& b) { return a.min_x < b.max_x && b.min_x < a.max_x && a.min_y < b.max_y && b.min_y < a.max_y; }
 
 /// Each content once, the preferred first: finer cells, then the lower hash.
-std::vector<RasterInput> read_inputs(const std::vector<fs::path>& files, const PriorOptions& options, int threads) {
+std::vector<RasterInput> read_inputs(const std::vector<fs::path>& files, const PriorOptions& options, int threads, const Events& events) {
   std::vector<RasterInput> inputs;
   for (const fs::path& file : files) {
     RasterFacts facts = read_raster_facts(file);
-    InputCrs crs = resolve_input_crs(options, facts.crs, file.string());
+    InputCrs crs = resolve_input_crs(options, facts.crs, file.string(), events);
     inputs.push_back({file, "", std::move(facts), std::move(crs)});
   }
   parallel_for(inputs.size(), threads, [&](std::size_t i) { inputs[i].sha256 = content_hash(inputs[i].file); });
@@ -301,7 +301,7 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
                                 Overwrite overwrite, const std::string& generator, int threads, const Events& events) {
   prior_options.validate();
   raster_options.validate();
-  const std::vector<RasterInput> inputs = read_inputs(files, prior_options, threads);
+  const std::vector<RasterInput> inputs = read_inputs(files, prior_options, threads, events);
   const Crs prior = prior_crs(inputs, prior_options, events);
   const BboxFilter bbox(prior_options, prior);
 

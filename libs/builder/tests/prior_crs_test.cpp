@@ -24,7 +24,7 @@ Resolved resolve(const PriorOptions& options, const std::vector<std::string>& de
   try {
     std::vector<InputCrs> inputs;
     for (const std::string& text : declared)
-      inputs.push_back(resolve_input_crs(options, text.empty() ? std::nullopt : std::optional(Crs::parse(text)), "input.tif"));
+      inputs.push_back(resolve_input_crs(options, text.empty() ? std::nullopt : std::optional(Crs::parse(text)), "input.tif", events));
     resolved.crs = resolve_prior_crs(options, inputs, middle, events);
   } catch (const CrsError& error) {
     resolved.error = error.what();
@@ -73,8 +73,8 @@ TEST(PriorCrs, the_users_word_declares_heights) {
 
 TEST(PriorCrs, assumed_heights_are_recorded_and_declared_ones_keep_their_own) {
   const PriorOptions options = with([](auto& o) { o.assume_vertical = "EPSG:5773"; });
-  EXPECT_EQ(resolve_input_crs(options, Crs::parse("EPSG:25832"), "a").assumed_vertical, "EPSG:5773");
-  const InputCrs declared = resolve_input_crs(options, Crs::parse("EPSG:25832+7837"), "a");
+  EXPECT_EQ(resolve_input_crs(options, Crs::parse("EPSG:25832"), "a", {}).assumed_vertical, "EPSG:5773");
+  const InputCrs declared = resolve_input_crs(options, Crs::parse("EPSG:25832+7837"), "a", {});
   EXPECT_EQ(declared.assumed_vertical, "");
   EXPECT_EQ(declared.crs.name(), "EPSG:25832+7837");
 }
@@ -90,6 +90,39 @@ TEST(PriorCrs, unusable_systems_are_refused) {
   EXPECT_NE(resolve({}, {"EPSG:25832+7837", "EPSG:25832"}).error.find("undeclared"), std::string::npos);
   EXPECT_NE(resolve(with([](auto& o) { o.assume_vertical = "EPSG:25832"; }), {"EPSG:25832"}).error.find("no vertical CRS"), std::string::npos);
   EXPECT_NE(resolve(with([](auto& o) { o.source_crs = "EPSG:5773"; }), {"EPSG:25832"}).error.find("heights only"), std::string::npos);
+}
+
+TEST(PriorCrs, a_zone_beside_the_data_is_warned_of_and_a_far_one_refused) {
+  const auto asked = [](const std::string& crs) { return with([&](auto& o) { o.crs = crs; }); };
+  EXPECT_TRUE(resolve(asked("EPSG:25832+7837"), {"EPSG:4258+7837"}).warnings.empty());
+  EXPECT_TRUE(resolve(asked("EPSG:25832+7837"), {"EPSG:4258+7837"}, {48.1, 12.2, 0}).warnings.empty()) << "a city on the border of its zone";
+  const Resolved beside = resolve(asked("EPSG:25833+7837"), {"EPSG:4258+7837"}, {49.0, 8.4, 0});
+  EXPECT_EQ(beside.crs->name(), "EPSG:25833+7837") << "as asked";
+  ASSERT_EQ(beside.warnings.size(), 1u);
+  for (const char* part : {"--crs EPSG:25833+7837 (ETRS89 / UTM zone 33N) is meant for longitudes 12 to 18", "longitude 8.400, latitude 49.000", "EPSG:25832 fits there"})
+    EXPECT_NE(beside.warnings[0].find(part), std::string::npos) << beside.warnings[0];
+  EXPECT_TRUE(resolve(asked("EPSG:25833+7837"), {"EPSG:4258+7837"}, {70.4, 31.1, 0}).crs) << "all of Norway is mapped in zone 33";
+  EXPECT_NE(resolve(asked("EPSG:32632+5773"), {"EPSG:4326+5773"}, {49.0, 28, 0}).error.find("makes lengths wrong by 2.3 %"), std::string::npos);
+  EXPECT_NE(resolve(asked("EPSG:32632+5773"), {"EPSG:4326+5773"}, {40.8, -73.9, 0}).error.find("EPSG:32618 fits there"), std::string::npos);
+  EXPECT_NE(resolve(asked("EPSG:3857"), {"EPSG:4326"}).error.find("EPSG:3857"), std::string::npos) << "Web Mercator has no metres";
+}
+
+TEST(PriorCrs, what_a_box_keeps_counts_not_the_whole_file) {
+  PriorOptions options = with([](auto& o) { o.crs = "EPSG:25833"; o.bbox = {13.3, 52.4, 13.5, 52.6}; });
+  EXPECT_EQ(resolve(options, {"EPSG:25832"}, {51, 8, 0}).warnings.size(), 1u) << "undeclared heights alone";
+}
+
+TEST(PriorCrs, an_override_of_what_a_file_says_is_told) {
+  const auto warnings = [](const std::string& source_crs, const std::string& declared) {
+    Resolved resolved = resolve(with([&](auto& o) { o.source_crs = source_crs; o.crs = "EPSG:25832+7837"; }), {declared});
+    EXPECT_EQ(resolved.error, "");
+    return resolved.warnings;
+  };
+  ASSERT_EQ(warnings("EPSG:25833+7837", "EPSG:25832+7837").size(), 1u);
+  EXPECT_EQ(warnings("EPSG:25833+7837", "EPSG:25832+7837")[0], "input.tif: says that it is in EPSG:25832+7837; read as EPSG:25833+7837 by --source-crs");
+  EXPECT_EQ(warnings("EPSG:25832+7837", "EPSG:25832+5783").size(), 1u) << "other heights";
+  EXPECT_TRUE(warnings("EPSG:25832+7837", "EPSG:25832").empty()) << "completed, not contradicted";
+  EXPECT_TRUE(warnings("EPSG:25832+7837", "").empty());
 }
 
 }  // namespace

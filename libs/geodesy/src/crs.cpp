@@ -1,7 +1,9 @@
 #include <priormap/geodesy/crs.hpp>
 
 #include <GeographicLib/UTMUPS.hpp>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -192,6 +194,12 @@ std::shared_ptr<const Crs::Impl> describe(const ProjContext& context, const PJ* 
 
 }  // namespace
 
+double AreaOfUse::degrees_outside(const GeoPoint& place) const {
+  const double width = east_deg < west_deg ? east_deg + 360 - west_deg : east_deg - west_deg;
+  const double east_of_west = std::remainder(place.lon_deg - west_deg - width / 2, 360) + width / 2;   // from the middle of the area, either way
+  return std::max({0.0, -east_of_west, east_of_west - width, south_deg - place.lat_deg, place.lat_deg - north_deg});
+}
+
 Crs::Crs(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
 Crs Crs::parse(const std::string& text) {
@@ -280,6 +288,26 @@ Crs Crs::with_vertical(const Crs& vertical) const {
 Crs Crs::geographic_base() const {
   if (impl_->geographic_base.empty()) throw CrsError(impl_->human_name + " has no geographic coordinate reference system under it");
   return impl_->geographic_base == impl_->name ? *this : parse(impl_->geographic_base);
+}
+
+std::optional<AreaOfUse> Crs::area_of_use() const {
+  const ProjContext context;
+  const ProjObject crs = create_crs(context, horizontal().name());
+  AreaOfUse area;
+  const char* name = nullptr;
+  if (!crs || !proj_get_area_of_use(context, crs.get(), &area.west_deg, &area.south_deg, &area.east_deg, &area.north_deg, &name)) return std::nullopt;
+  constexpr double unknown = -1000;   // PROJ's word for it
+  return area.west_deg == unknown ? std::nullopt : std::optional(area);
+}
+
+double Crs::length_distortion(const GeoPoint& place) const {
+  const ProjContext context;
+  const ProjObject stated = create_crs(context, horizontal().name());
+  const ProjObject crs(proj_normalize_for_visualization(context, stated.get()));   // PROJ knows no factors of northing-first systems
+  proj_errno_reset(crs.get());
+  const PJ_FACTORS factors = proj_factors(crs.get(), proj_coord(proj_torad(place.lon_deg), proj_torad(place.lat_deg), 0, 0));
+  if (proj_errno(crs.get()) != 0 || !(factors.tissot_semiminor > 0)) return std::numeric_limits<double>::infinity();
+  return std::max(std::abs(factors.tissot_semimajor - 1), std::abs(factors.tissot_semiminor - 1));
 }
 
 bool Crs::equivalent_to(const Crs& other) const {

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include <priormap/core/error.hpp>
 
+using priormap::AreaOfUse;
 using priormap::Crs;
 using priormap::CrsError;
 
@@ -161,6 +163,33 @@ TEST(CrsTest, UtmZonesWithTheExceptionsOfNorwayAndSvalbard) {
   EXPECT_THROW(Crs::utm_zone(0, 88), CrsError);
   EXPECT_THROW(Crs::utm_zone(0, 91), CrsError);
   EXPECT_THROW(Crs::utm_zone(std::nan(""), 0), CrsError);
+}
+
+TEST(CrsTest, KnowsWhereItIsMeantToBeUsed) {
+  const AreaOfUse utm = Crs::parse("EPSG:25832+7837").area_of_use().value();
+  EXPECT_NEAR(utm.west_deg, 6, 0.02);
+  EXPECT_NEAR(utm.east_deg, 12, 0.02);
+  EXPECT_EQ(utm.degrees_outside({48.1, 11.5, 0}), 0);
+  EXPECT_NEAR(utm.degrees_outside({48.1, 13.5, 0}), 1.5, 0.02);
+  EXPECT_NEAR(utm.degrees_outside({48.1, 5, 0}), 1, 0.02);
+  EXPECT_NEAR(utm.degrees_outside({30, 13, 0}), 8.8, 0.1);
+  EXPECT_FALSE(Crs::parse("+proj=tmerc +lon_0=9").area_of_use());
+  const AreaOfUse fiji{177, -21, -178, -12};   // across the antimeridian
+  EXPECT_EQ(fiji.degrees_outside({-17, 179, 0}), 0);
+  EXPECT_EQ(fiji.degrees_outside({-17, -179, 0}), 0);
+  EXPECT_NEAR(fiji.degrees_outside({-17, 176, 0}), 1, 1e-9);
+  EXPECT_NEAR(fiji.degrees_outside({-17, -175, 0}), 3, 1e-9);
+}
+
+TEST(CrsTest, LengthsAreDistortedAsTheProjectionSays) {
+  const Crs utm = Crs::parse("EPSG:25832");
+  EXPECT_NEAR(utm.length_distortion({48, 9, 0}), 0.0004, 1e-7) << "by definition on the central meridian";
+  EXPECT_NEAR(Crs::parse("EPSG:31468").length_distortion({48, 12, 0}), 0, 1e-7) << "northing first, true on its meridian";
+  // On the sphere k = k0 / sqrt(1 - (cos(lat) sin(dlon))^2) (Snyder 1987, 8-4).
+  const double across = std::cos(60 * M_PI / 180) * std::sin(20 * M_PI / 180);
+  EXPECT_NEAR(utm.length_distortion({60, 29, 0}), 0.9996 / std::sqrt(1 - across * across) - 1, 2e-4);
+  EXPECT_NEAR(Crs::parse("EPSG:3857").length_distortion({60, 10, 0}), 1, 0.01) << "Web Mercator doubles lengths at 60 degrees";
+  EXPECT_EQ(utm.length_distortion({0, 120, 0}), std::numeric_limits<double>::infinity()) << "more than a quarter round the globe";
 }
 
 }  // namespace

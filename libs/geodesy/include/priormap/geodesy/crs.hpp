@@ -3,7 +3,16 @@
 #include <optional>
 #include <string>
 
+#include <priormap/geodesy/geo_point.hpp>
+
 namespace priormap {
+
+/// Where the authority means a CRS to be used [degrees]; west > east where it crosses the antimeridian.
+struct AreaOfUse {
+  double west_deg = 0, south_deg = 0, east_deg = 0, north_deg = 0;
+  /// How far a place lies outside, along the meridian or the parallel; 0 inside.
+  double degrees_outside(const GeoPoint& place) const;
+};
 
 /// A coordinate reference system (ISO 19111): horizontal, optionally with heights. Axis order inside priormap is
 /// always east, north, up (longitude, latitude for geographic systems), angles in degrees at this boundary, lengths in the
@@ -46,6 +55,11 @@ class Crs {
   /// Compound of this CRS's horizontal part and the vertical part of `vertical`. @throws CrsError when that has none.
   Crs with_vertical(const Crs& vertical) const;
   Crs geographic_base() const;                     ///< the 2D geographic CRS it is defined on
+
+  std::optional<AreaOfUse> area_of_use() const;    ///< of the horizontal part; none where the authority states none
+  /// Largest relative error of a short length on the grid of a projected CRS against the ellipsoid: 0.0004 in the middle of a UTM zone;
+  /// infinity where the projection does not reach.
+  double length_distortion(const GeoPoint& place) const;
 
   bool equivalent_to(const Crs& other) const;
   /// Heights of both count from the same surface; units and direction may differ. False where one declares no vertical CRS.
