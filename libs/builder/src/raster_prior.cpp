@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Height noise of airborne surface and terrain models where the user says nothing better.
+/// Height noise of airborne surface and terrain models where neither user nor file says better.
 constexpr double default_height_sigma_m = 0.15;
 /// Operations less accurate than this are worth a warning.
 constexpr double accuracy_warning_m = 0.5;
@@ -101,7 +101,9 @@ void warn_of_inaccuracy(const RasterInput& input, const CoordinateOperation& ope
   events.warn(text.str());
 }
 
-double sigma_of(const RasterPriorOptions& options, double cell_m) { return options.sigma_m.value_or(std::hypot(default_height_sigma_m, cell_m / std::sqrt(12.0))); }
+double sigma_of(const RasterPriorOptions& options, const RasterFacts& facts, double cell_m) {
+  return options.sigma_m.value_or(std::hypot(facts.height_sigma_m.value_or(default_height_sigma_m), cell_m / std::sqrt(12.0)));
+}
 
 PriorSource source_of(const RasterInput& input, const RasterPoints& points, const PriorOptions& prior_options, const RasterPriorOptions& raster_options) {
   PriorSource source;
@@ -115,7 +117,7 @@ PriorSource source_of(const RasterInput& input, const RasterPoints& points, cons
   source.crs = input.crs.crs.name();
   source.assumed_vertical = input.crs.assumed_vertical;
   source.operation = points.operation();
-  source.sigma_m = sigma_of(raster_options, points.cell_size());
+  source.sigma_m = sigma_of(raster_options, input.facts, points.cell_size());
   return source;
 }
 

@@ -95,6 +95,16 @@ TEST_F(RasterPriorTest, every_cell_is_a_point_with_class_source_and_sigma) {
   EXPECT_EQ(report_.manifest.sources[0].file_name, "dem.tif");
 }
 
+TEST_F(RasterPriorTest, sigma_is_the_users_else_the_rasters_own_else_that_of_airborne_lidar) {
+  RasterFixture stated = hills(20, 20);
+  stated.adjust = [](GDALDataset& d) { d.SetMetadataItem("DTED_VerticalAccuracy_ACC", "0004"); };
+  const auto sigma = [&](const fs::path& file, const std::string& name, const RasterPriorOptions& raster) { return points_of(build({file}, {}, name, 1, raster)).sigma_m.front(); };
+  const fs::path file = write(stated, "stated.tif");
+  EXPECT_NEAR(sigma(file, "own", {}), std::hypot(4 / 1.645, 1 / std::sqrt(12.0)), 1e-3);
+  EXPECT_NEAR(sigma(file, "users", {.sigma_m = 0.5}), 0.5, 1e-3);
+  EXPECT_NEAR(sigma(write(hills(20, 20), "silent.tif"), "default", {}), std::hypot(0.15, 1 / std::sqrt(12.0)), 1e-3);
+}
+
 TEST_F(RasterPriorTest, the_bytes_do_not_depend_on_threads_or_order_of_inputs) {
   const fs::path west = write(hills(), "west.tif");
   RasterFixture shifted = hills();

@@ -9,6 +9,7 @@
 #include <array>
 #include <cfloat>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <mutex>
 #include <vector>
@@ -55,6 +56,17 @@ double band_unit_m(const std::string& unit) {
   if (unit == "ft" || unit == "foot" || unit == "feet") return 0.3048;
   if (unit == "us-ft" || unit == "US survey foot" || unit == "sfoot" || unit == "ftUS") return 1200.0 / 3937.0;
   return 1;
+}
+
+/// DTED (MIL-PRF-89020B) states the error that 90 % of the heights keep, in whole metres; "NA" where unknown.
+std::optional<double> stated_sigma_m(GDALDataset& dataset) {
+  constexpr double sigmas_of_90_percent = 1.645;
+  for (const char* item : {"DTED_VerticalAccuracy_ACC", "DTED_VerticalAccuracy_UHL"}) {
+    const char* text = dataset.GetMetadataItem(item);
+    const double error_m = text ? std::atof(text) : 0;
+    if (error_m > 0) return error_m / sigmas_of_90_percent;
+  }
+  return std::nullopt;
 }
 
 Bounds2 bounds_of(const Eigen::Affine2d& world_from_cell, int width, int height) {
@@ -113,6 +125,7 @@ RasterFile::RasterFile(const std::filesystem::path& file) : file_(file), open_(s
   facts_.bounds = bounds_of(world_from_cell_, facts_.width, facts_.height);
   facts_.cell_x = world_from_cell_.linear().col(0).norm();
   facts_.cell_y = world_from_cell_.linear().col(1).norm();
+  facts_.height_sigma_m = stated_sigma_m(dataset);
   try {
     facts_.crs = crs_of(dataset.GetSpatialRef());
   } catch (const CrsError& error) {

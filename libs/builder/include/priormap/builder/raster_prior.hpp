@@ -18,7 +18,7 @@ struct RasterPriorOptions {
 
   template <class Visitor>
   void describe(Visitor& visit) {
-    visit("sigma", sigma_m, {"standard deviation of a point; default: sqrt(0.15^2 + cell^2 / 12)", "m", 0.001, 65});
+    visit("sigma", sigma_m, {"standard deviation of a point; default: sqrt(s^2 + cell^2 / 12), s as the raster states (DTED) or 0.15", "m", 0.001, 65});
   }
   /// @throws UsageError for another kind
   void validate() const;

@@ -15,6 +15,7 @@ struct RasterFacts {
   std::optional<Crs> crs;          ///< none: the file declares none
   Bounds2 bounds;                  ///< in the file's own CRS
   double cell_x = 0, cell_y = 0;   ///< length of a cell's edges in the unit of the file's CRS
+  std::optional<double> height_sigma_m;   ///< from the vertical accuracy that DTED files, and copies of them, state (adr/0015)
 };
 
 /// Any raster that GDAL reads: plain paths, /vsi... paths, and zip archives with one raster inside (N43E007.hgt.zip).
