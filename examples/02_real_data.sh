@@ -47,13 +47,15 @@ place() {
         outlines ? value["heights by tag"] " / " value["heights by dsm"] " / " value["heights by levels"] " / " value["heights by default"] : "",
         value["points"], seconds, cpu, peak
     }' "$out/priors/$name.log"
-  ! command -v gdaldem >/dev/null || PRIORMAP_BIN=$(dirname "$(command -v priorinfo)") examples/render_prior.sh "$out/priors/$name" "$out/priors/$name.png" 45 20
+  ! $pictures || PRIORMAP_BIN=$(dirname "$(command -v priorinfo)") examples/render_prior.sh "$out/priors/$name" "$out/priors/$name.png" 45 20
 }
 
 priors() {
   rm -rf "$out/priors"
   mkdir -p "$out/priors"
   say "Priors of real places"
+  local pictures=true
+  command -v gdaldem >/dev/null || { pictures=false; echo "no pictures: gdaldem is not installed (Debian: apt-get install gdal-bin)" >&2; }
   echo "| place | tool | buildings + parts | heights by tag / DSM / levels / default | points | seconds | CPU seconds | peak MB |"
   echo "|---|---|---|---|---|---|---|---|"
   local gothenburg=$data/overlap_gothenburg

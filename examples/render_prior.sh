@@ -6,6 +6,7 @@
 set -euo pipefail
 PATH="${PRIORMAP_BIN:-$(dirname "$0")/../build/release/bin}:$PATH"
 [ $# -ge 2 ] || { sed -n '2,5s/^# *//p' "$0" >&2; exit 2; }
+command -v gdaldem >/dev/null || { echo "render_prior.sh: gdaldem is not installed (Debian: apt-get install gdal-bin)" >&2; exit 1; }
 prior=$1 picture=$2 elevation=${3:-90} azimuth=${4:-0}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
