@@ -46,14 +46,24 @@ std::optional<GeoPoint> reach(const Crs& crs, const Eigen::Vector3d& place) {
   return GeoPoint{lon_lat.y(), lon_lat.x(), 0};
 }
 
-/// Data in GML may follow the authority's axis order: the URN and URL forms say so. Files that name a projected CRS that way and still write
-/// the easting first are common: then the order in reach of the CRS counts.
+/// How well a place fits a CRS: out of reach, somewhere, or where the CRS is meant to be used.
+enum class Fit { none, reached, in_area };
+
+Fit fit(const Crs& crs, const Eigen::Vector3d& place) {
+  constexpr double border_deg = 1;
+  const std::optional<GeoPoint> lon_lat = reach(crs, place);
+  if (!lon_lat) return Fit::none;
+  const std::optional<AreaOfUse> area = crs.area_of_use();
+  return !area || area->degrees_outside(*lon_lat) <= border_deg ? Fit::in_area : Fit::reached;
+}
+
+/// Data may follow the authority's axis order: the URN and URL forms of srsName say so. Files that name a CRS that way and still write the
+/// easting first are common, and so is the reverse: the order that fits the CRS better counts, and the form of the name where both fit alike.
 bool northing_comes_first(const std::string& srs_name, const Crs& crs, const Eigen::Vector3d& place) {
   if (!crs.authority_north_first()) return false;
   const bool by_name = srs_name.starts_with("urn:ogc:") || srs_name.starts_with("http");
-  const bool straight = reach(crs.horizontal(), place).has_value(), turned = reach(crs.horizontal(), swapped(place)).has_value();
-  if (straight != turned) return turned;
-  return by_name;
+  const Fit straight = fit(crs.horizontal(), place), turned = fit(crs.horizontal(), swapped(place));
+  return straight == turned ? by_name : turned > straight;
 }
 
 }  // namespace
@@ -61,7 +71,7 @@ bool northing_comes_first(const std::string& srs_name, const Crs& crs, const Eig
 ModelFrames::ModelFrames(const PriorOptions& options, const BuildingModel& first, const std::string& file, const Events& events) : options_(options), events_(events) {
   const InputCrs input = resolve_input_crs(options, declared_crs(first.srs_name, file, !options.source_crs.empty()), file, {});
   Eigen::Vector3d place = first_point(first, file);
-  if (options.source_crs.empty() && northing_comes_first(first.srs_name, input.crs, place)) place = swapped(place);
+  if (northing_comes_first(first.srs_name, input.crs, place)) place = swapped(place);
   const std::optional<GeoPoint> middle = reach(input.crs.horizontal(), place);
   if (!middle) throw CrsError(file + ": its coordinates lie out of reach of " + input.crs.human_name() + "; name their CRS with --source-crs");
   prior_ = resolve_prior_crs(options, {input}, *middle, events);
@@ -70,7 +80,7 @@ ModelFrames::ModelFrames(const PriorOptions& options, const BuildingModel& first
 ModelFrames::Frame& ModelFrames::frame_of(const BuildingModel& model, const std::string& file) {
   if (const auto known = frames_.find(model.srs_name); known != frames_.end()) return known->second;
   const InputCrs input = resolve_input_crs(options_, declared_crs(model.srs_name, file, !options_.source_crs.empty()), file, events_);
-  Frame frame{options_.source_crs.empty() && northing_comes_first(model.srs_name, input.crs, first_point(model, file)), std::nullopt,
+  Frame frame{northing_comes_first(model.srs_name, input.crs, first_point(model, file)), std::nullopt,
               {input.crs.name(), input.assumed_vertical, {}}};
   Transformer transformer(input.crs, *prior_);
   frame.source.operation = transformer.operation();

@@ -93,6 +93,31 @@ TEST_F(HeightRasterTest, srtm_tiles_have_their_samples_on_whole_arc_seconds) {
   GDALClose(dataset);
 }
 
+TEST_F(HeightRasterTest, gauss_krueger_whose_authority_names_northing_first_has_east_along_the_rows) {
+  const HeightRaster raster = open(write({.transform = {4468000, 1, 0, 5334000, 0, -1}, .crs = "EPSG:31468", .value = plane}, "krueger.tif"), "EPSG:31468");
+  EXPECT_NEAR(raster.at(4468003.5, 5333996.5).value(), plane(3, 3), 1e-6);
+  EXPECT_FALSE(raster.at(5333996.5, 4468003.5));
+}
+
+TEST_F(HeightRasterTest, dted_files_and_their_copies_state_their_accuracy) {
+  constexpr double step = 1.0 / 120;   // level 0: a degree in 121 x 121 posts
+  const auto stating = [&](const char* accuracy) {
+    return write({.width = 121, .height = 121, .transform = {7 - step / 2, step, 0, 44 + step / 2, 0, -step}, .crs = "EPSG:4326", .type = GDT_Int16,
+                  .adjust = [&](GDALDataset& d) { if (accuracy) d.SetMetadataItem("DTED_VerticalAccuracy_ACC", accuracy); }},
+                 std::string(accuracy ? accuracy : "silent") + ".tif");
+  };
+  const fs::path copy = stating("0016");
+  auto* tiff = GDALDataset::Open(copy.c_str(), GDAL_OF_RASTER);
+  ASSERT_NE(tiff, nullptr);
+  const fs::path dted = fs::path(copy).replace_filename("n43.dt0");
+  GDALClose(GetGDALDriverManager()->GetDriverByName("DTED")->CreateCopy(dted.c_str(), tiff, FALSE, nullptr, nullptr, nullptr));
+  GDALClose(tiff);
+  EXPECT_NEAR(read_raster_facts(copy).height_sigma_m.value(), 16 / 1.645, 1e-9);
+  EXPECT_NEAR(read_raster_facts(dted).height_sigma_m.value(), 16 / 1.645, 1e-9);
+  EXPECT_FALSE(read_raster_facts(stating("NA  ")).height_sigma_m);
+  EXPECT_FALSE(read_raster_facts(stating(nullptr)).height_sigma_m);
+}
+
 TEST_F(HeightRasterTest, every_way_to_say_no_data_is_understood) {
   const auto hole = [](double value) { return [value](double col, double row) { return col == 5 && row == 4 ? value : plane(col, row); }; };
   const auto expect_hole = [&](const RasterFixture& fixture, const std::string& name) {

@@ -107,6 +107,27 @@ TEST_F(OgrFootprints, EveryFormatGivesTheSameOutlines) {
   }
 }
 
+/// EPSG names northing first for Gauss-Krueger; each format has its own habit, and GDAL says which.
+TEST_F(OgrFootprints, EastComesBeforeNorthInGaussKruegerOfEveryFormat) {
+  const std::string at_9_east = R"({"type":"Polygon","coordinates":[[[9,48],[9.001,48],[9.001,48.001],[9,48.001],[9,48]]]})";
+  const fs::path file = write_features(feature("", at_9_east));
+  const char* words[] = {"-t_srs", "EPSG:31467", nullptr};
+  for (const char* name : {"town.gpkg", "town.shp", "town.fgb", "town.gml", "projected.geojson"}) {
+    auto* options = GDALVectorTranslateOptionsNew(const_cast<char**>(words), nullptr);
+    auto* source = GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR);
+    GDALDatasetH handle = source;
+    GDALClose(GDALVectorTranslate((folder_ / name).c_str(), nullptr, 1, &handle, options, nullptr));
+    GDALClose(source);
+    GDALVectorTranslateOptionsFree(options);
+    const FootprintLayers layers = read_ogr_footprints(folder_ / name, {}, diagnostics_);
+    ASSERT_TRUE(layers.crs && layers.crs->is_projected()) << name;
+    ASSERT_EQ(layers.footprints.size(), 1u) << name;
+    const Eigen::Vector2d corner = layers.footprints[0].rings[0][0];
+    EXPECT_NEAR(corner.x(), 3'500'070, 300) << name << ": on the central meridian, but for the datum";
+    EXPECT_NEAR(corner.y(), 5'317'700, 1000) << name << ": the meridian's length to 48 degrees";
+  }
+}
+
 TEST_F(OgrFootprints, LinesAndPointsOfATrackEastBeforeNorth) {
   const fs::path file = write_features(feature(R"("verdict":"anchored")", R"({"type":"LineString","coordinates":[[11,48,500],[11.001,48,500],[11.001,48.002,501]]})") + "," +
                                        feature("", R"({"type":"MultiLineString","coordinates":[[[12,49],[12.1,49]],[[13,49],[13.1,49]]]})") + "," +

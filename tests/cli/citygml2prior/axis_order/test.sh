@@ -17,6 +17,30 @@ box http://www.opengis.net/def/crs/EPSG/0/31468 "$(turned "$a")" "$(turned "$b")
 for name in plain urn url; do points $name; done
 for name in urn url; do cmp plain.xyz $name.xyz || die "$name gives other points"; done
 
+# What the coordinates say is stronger than the form of the name: northings of Gauss-Krueger cannot be its eastings. Heights declared by --source-crs change nothing.
+box EPSG:31468 "$(turned "$a")" "$(turned "$b")" "$(turned "$c")" >careless_plain.gml
+box urn:ogc:def:crs:EPSG::31468 "$a" "$b" "$c" >careless_urn.gml
+for name in careless_plain careless_urn; do points $name; cmp plain.xyz $name.xyz || die "$name gives other points"; done
+for name in plain urn; do
+  succeeds citygml2prior $name.gml --source-crs EPSG:31468+7837 --quiet -o high_$name
+  succeeds priorexport high_$name --sort -o high_$name.xyz
+done
+cmp high_plain.xyz high_urn.xyz || die "--source-crs changes the axis order"
+
+# CityJSON names its CRS by URL; writers put the easting first all the same.
+city() {   # "X Y" "X Y" "X Y"
+  echo "{\"type\":\"CityJSON\",\"version\":\"1.1\",\"transform\":{\"scale\":[1,1,1],\"translate\":[0,0,0]},"
+  echo "\"metadata\":{\"referenceSystem\":\"https://www.opengis.net/def/crs/EPSG/0/31468\"},\"CityObjects\":{\"b\":{\"type\":\"Building\",\"geometry\":[{\"type\":\"MultiSurface\",\"lod\":\"1\",\"boundaries\":[[[0,1,2]],[[3,4,1,0]]]}]}},"
+  echo "\"vertices\":[[${1/ /,},10],[${2/ /,},10],[${3/ /,},10],[${1/ /,},0],[${2/ /,},0]]}"
+}
+city "$a" "$b" "$c" >east.json
+city "$(turned "$a")" "$(turned "$b")" "$(turned "$c")" >north.json
+for name in east north; do
+  succeeds citygml2prior $name.json --quiet --crs EPSG:31468 -o $name
+  succeeds priorexport $name --sort -o $name.xyz
+done
+cmp east.xyz north.xyz || die "the axis order of CityJSON is mixed up"
+
 # Latitude first in a geographic CRS; on the inside of one polygon as well as on the envelope.
 box urn:ogc:def:crs:EPSG::4326 "48.1400 11.5700" "48.1400 11.5703" "48.1401 11.5703" >latitude.gml
 box EPSG:4326 "11.5700 48.1400" "11.5703 48.1400" "11.5703 48.1401" >longitude.gml
