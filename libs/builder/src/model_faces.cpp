@@ -42,8 +42,9 @@ bool is_implausible(const Polygon3& polygon, double area_m2) {
   return !((high - low).norm() <= longest_face_m && area_m2 <= largest_building_m2);
 }
 
-SurfaceClass class_by_slope(const Eigen::Vector3d& normal) {
-  return normal.z() > 0.3 ? SurfaceClass::roof : normal.z() < -0.3 ? SurfaceClass::ground_surface : SurfaceClass::wall;
+SurfaceClass class_by_slope(const Eigen::Vector3d& normal, ModelKind kind) {
+  const SurfaceClass underside = kind == ModelKind::bridge ? SurfaceClass::outer_ceiling : SurfaceClass::ground_surface;
+  return normal.z() > 0.3 ? SurfaceClass::roof : normal.z() < -0.3 ? underside : SurfaceClass::wall;
 }
 
 void turn_over(ModelFace& face) {
@@ -72,7 +73,7 @@ std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diag
       diagnostics.add(DiagnosticCode::implausible_size, model.id, "larger than any building; left out");
       continue;
     }
-    if (!model.terrain) total_m2 += area_m2;
+    if (model.kind != ModelKind::terrain) total_m2 += area_m2;
     face.normal = twice_area.normalized();
     const double deviation = deviation_from_plane(face.polygon, face.normal);
     face.planar = deviation <= planarity_m;
@@ -82,17 +83,19 @@ std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diag
       diagnostics.add(DiagnosticCode::polygon_wrong_orientation, model.id, "a roof that looks down");
       turn_over(face);
     }
-    if (face.surface_class == SurfaceClass::unclassified) face.surface_class = class_by_slope(face.normal);
+    if (face.surface_class == SurfaceClass::unclassified) face.surface_class = class_by_slope(face.normal, model.kind);
     faces.push_back(std::move(face));
   }
   return faces;
 }
 
-bool can_be_seen(const ModelFace& face) {
+bool can_be_seen(const ModelFace& face, ModelKind kind) {
+  const bool is_bridge = kind == ModelKind::bridge;
   switch (face.surface_class) {
-    case SurfaceClass::ground_surface: case SurfaceClass::outer_floor: case SurfaceClass::outer_ceiling: case SurfaceClass::closure: return false;
+    case SurfaceClass::ground_surface: case SurfaceClass::closure: return false;
+    case SurfaceClass::outer_floor: case SurfaceClass::outer_ceiling: return is_bridge;
     case SurfaceClass::terrain: return true;
-    default: return face.normal.z() > -0.7;
+    default: return is_bridge || face.normal.z() > -0.7;
   }
 }
 

@@ -18,8 +18,9 @@ struct ModelFace {
 /// file leaves unnamed are walls, roofs or ground surfaces by their slope; roofs that look down are turned over.
 std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diagnostics);
 
-/// False for what no beam from the street reaches: ground, floors, other undersides, and closures, which are not there.
-bool can_be_seen(const ModelFace& face);
+/// False for what no beam from the street reaches: ground, floors, other undersides, and closures, which are not there. Of a bridge the deck and the
+/// underside are seen, from above and below.
+bool can_be_seen(const ModelFace& face, ModelKind kind);
 
 /// Outline of a model as the features file wants it: its lowest-class faces (ground surfaces, else roofs) seen from above.
 std::vector<std::vector<std::vector<Eigen::Vector2d>>> footprint_of(const std::vector<ModelFace>& faces);

@@ -38,7 +38,25 @@ void read_models(const std::filesystem::path& file, const BuildingModelOptions& 
 }
 
 BuildingModelOptions reader_options(const ModelOptions& options) {
-  return {options.lod > 0 ? std::optional(options.lod) : std::nullopt};
+  return {options.lod > 0 ? std::optional(options.lod) : std::nullopt, options.bridges, options.vegetation};
+}
+
+PointClass class_of(ModelKind kind) {
+  switch (kind) {
+    case ModelKind::bridge: return PointClass::bridge;
+    case ModelKind::vegetation: return PointClass::vegetation;
+    case ModelKind::terrain: return PointClass::ground;
+    default: return PointClass::building;
+  }
+}
+
+std::size_t& count_of(ModelKind kind, ModelReport& report) {
+  switch (kind) {
+    case ModelKind::bridge: return report.bridges;
+    case ModelKind::vegetation: return report.plants;
+    case ModelKind::terrain: return report.terrain_models;
+    default: return report.buildings;
+  }
 }
 
 /// First pass: the CRS of the prior from the first building, and the walls of all.
@@ -52,13 +70,14 @@ class Survey {
       if (model.polygons.empty()) return;
       if (!frames_) frames_ = std::make_unique<ModelFrames>(prior_options_, model, file.path.string(), events_);
       file_frame_.try_emplace(file.path.string(), frames_->source(model, file.path.string()));
-      const bool hides_views = model_options_.sight.is_active() && !model.terrain;
+      // Under, behind and through bridges and plants much is seen.
+      const bool hides_views = model_options_.sight.is_active() && model.kind == ModelKind::building;
       if (!model_options_.visible_faces_only() && !hides_views) return;
       frames_->to_prior(model, file.path.string());
       Diagnostics ignored;
       const std::vector<ModelFace> faces = model_faces(model, ignored);
       if (hides_views) sight_.add(faces);
-      if (!model_options_.visible_faces_only()) return;
+      if (!model_options_.visible_faces_only() || model.kind == ModelKind::vegetation) return;
       for (const ModelFace& face : faces) {
         if (face.surface_class != SurfaceClass::closure) walls_.add(face.polygon, face.normal);
       }
@@ -91,12 +110,14 @@ class Survey {
 class ModelSampler {
  public:
   ModelSampler(const WallIndex& walls, const LineOfSight* sight, const Crs& prior, const PriorOptions& prior_options, const ModelOptions& model_options, PriorWriter& writer)
-      : walls_(walls), sight_(sight), bbox_(prior_options, prior), visible_only_(model_options.visible_faces_only()), sigma_m_(model_options.sigma_m), writer_(writer),
+      : walls_(walls), sight_(sight), bbox_(prior_options, prior), visible_only_(model_options.visible_faces_only()), model_sigma_m_(model_options.sigma_m),
+        vegetation_sigma_m_(model_options.vegetation_sigma_m), writer_(writer),
         sampler_(prior_options.spacing_or(0.5)), buffer_(writer) {}
 
   SightCounts sample(const BuildingModel& model, const std::string& source_id, std::uint16_t source, Diagnostics& diagnostics) {
     const std::vector<ModelFace> faces = model_faces(model, diagnostics);
-    const bool seen_as_a_whole = sight_ && !model.terrain;   // a terrain model may cover a city: face by face
+    const bool is_terrain = model.kind == ModelKind::terrain, seen_as_a_whole = sight_ && !is_terrain;   // a terrain model may cover a city: face by face
+    const double sigma_m = model.kind == ModelKind::vegetation ? vegetation_sigma_m_ : model_sigma_m_;
     SightCounts counts;
     std::optional<std::uint32_t> feature;
     const auto write_collected = [&] {
@@ -111,15 +132,15 @@ class ModelSampler {
           continue;
         }
         if (!feature) {
-          feature = model.terrain ? PointCloud::no_feature : writer_.add_feature(feature_of(model, faces, source_id));
-          buffer_.begin(source, *feature, model.terrain ? PointClass::ground : PointClass::building);
+          feature = is_terrain ? PointCloud::no_feature : writer_.add_feature(feature_of(model, faces, source_id, sigma_m));
+          buffer_.begin(source, *feature, class_of(model.kind));
         }
-        buffer_.add(p, collected_.normals[i], sigma_m_);
+        buffer_.add(p, collected_.normals[i], sigma_m);
       }
       collected_.clear();
     };
     for (std::uint32_t number = 0; number < faces.size(); ++number) {
-      collect_points(faces[number], number);
+      collect_points(faces[number], number, model.kind);
       if (!seen_as_a_whole) write_collected();
     }
     if (seen_as_a_whole) write_collected();
@@ -128,8 +149,8 @@ class ModelSampler {
   void flush() { buffer_.flush(); }
 
  private:
-  void collect_points(const ModelFace& face, std::uint32_t number) {
-    if (visible_only_ && !can_be_seen(face)) return;
+  void collect_points(const ModelFace& face, std::uint32_t number, ModelKind kind) {
+    if (visible_only_ && !can_be_seen(face, kind)) return;
     points_.clear();
     normals_.clear();
     if (face.planar) {
@@ -144,12 +165,12 @@ class ModelSampler {
     collected_.faces.resize(collected_.points.size(), number);
   }
 
-  Feature feature_of(const BuildingModel& model, const std::vector<ModelFace>& faces, const std::string& source_id) const {
+  Feature feature_of(const BuildingModel& model, const std::vector<ModelFace>& faces, const std::string& source_id, double sigma_m) const {
     Feature feature;
     feature.source = source_id;
     feature.id = model.id;
     feature.height_rule = "model";
-    feature.sigma_m = sigma_m_;
+    feature.sigma_m = sigma_m;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const ModelFace& face : faces) {
       for (const Eigen::Vector3d& p : face.polygon.exterior) {
@@ -167,7 +188,7 @@ class ModelSampler {
   const LineOfSight* sight_;
   BboxFilter bbox_;
   bool visible_only_;
-  double sigma_m_;
+  double model_sigma_m_, vegetation_sigma_m_;
   PriorWriter& writer_;
   FaceSampler sampler_;
   CloudBuffer buffer_;
@@ -195,7 +216,7 @@ class Sampling {
           });
       for (std::size_t i = 0; i < batch_.size(); ++i) {
         report.diagnostics.merge(diagnostics[i]);
-        if (of_building[i].sampled > 0) ++(batch_[i].terrain ? report.terrain_models : report.buildings);
+        if (of_building[i].sampled > 0) ++count_of(batch_[i].kind, report);
         points += of_building[i];
       }
       batch_.clear();
@@ -283,13 +304,14 @@ ModelReport build_model_prior(const std::vector<std::filesystem::path>& inputs, 
   Sampling sampling(survey, sight ? &*sight : nullptr, *survey.frames(), prior_options, model_options, writer, threads);
   SightCounts points;
   for (std::size_t i = 0; i < with_models.size(); ++i) {
-    const std::size_t before = report.buildings;
+    const std::size_t buildings_before = report.buildings, bridges_before = report.bridges;
     const SightCounts points_here = sampling.read(*with_models[i], manifest.sources[i].id, static_cast<std::uint16_t>(i), report);
     points += points_here;
-    manifest.sources[i].facts.emplace_back("buildings", std::to_string(report.buildings - before));
+    manifest.sources[i].facts.emplace_back("buildings", std::to_string(report.buildings - buildings_before));
+    if (report.bridges > bridges_before) manifest.sources[i].facts.emplace_back("bridges", std::to_string(report.bridges - bridges_before));
     std::ranges::move(sight_facts(model_options.sight, points_here), std::back_inserter(manifest.sources[i].facts));
   }
-  if (report.buildings + report.terrain_models == 0) {
+  if (report.buildings + report.bridges + report.plants + report.terrain_models == 0) {
     throw FormatError(files.front().path, prior_options.bbox.empty() ? "none of its buildings could be built"
                                                                      : "no building lies inside --bbox (W,S,E,N in " + prior_options.bbox_crs + ")");
   }
@@ -304,6 +326,8 @@ std::string to_text(const ModelReport& report) {
   std::ostringstream text;
   const auto line = [&](const std::string& name, const auto& value) { text << std::left << std::setw(28) << name << value << '\n'; };
   line("buildings", report.buildings);
+  if (report.bridges > 0) line("bridges", report.bridges);
+  if (report.plants > 0) line("plants", report.plants);
   line("polygons", report.polygons);
   line("terrain models", report.terrain_models);
   line("points", report.manifest.num_points);

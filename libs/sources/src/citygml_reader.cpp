@@ -22,13 +22,16 @@ constexpr std::size_t max_token = std::size_t{16} << 20;
 constexpr int max_passes = 4;
 
 enum class Tag : std::uint8_t {
-  other, building, building_part, terrain, indoor, boundary, installation, lod_property, geometry_off, tin, polygon, ring, oriented_surface, coordinates,
+  other, building, bridge, vegetation, building_part, terrain, indoor, boundary, installation, lod_property, geometry_off, tin, polygon, ring, oriented_surface, coordinates,
   implicit_geometry, matrix, reference_point, template_geometry, envelope,
 };
 
 Tag tag_of(std::string_view name) {
   static const std::unordered_map<std::string_view, Tag> tags = {
-      {"Building", Tag::building}, {"BuildingPart", Tag::building_part}, {"TINRelief", Tag::terrain},
+      {"Building", Tag::building}, {"BuildingPart", Tag::building_part}, {"Bridge", Tag::bridge}, {"BridgePart", Tag::building_part},
+      {"SolitaryVegetationObject", Tag::vegetation}, {"PlantCover", Tag::vegetation}, {"TINRelief", Tag::terrain},
+      {"BridgeRoom", Tag::indoor}, {"BridgeFurniture", Tag::indoor}, {"IntBridgeInstallation", Tag::indoor},
+      {"BridgeInstallation", Tag::installation}, {"BridgeConstructionElement", Tag::installation}, {"BridgeConstructiveElement", Tag::installation},
       {"Room", Tag::indoor}, {"BuildingRoom", Tag::indoor}, {"BuildingFurniture", Tag::indoor},
       {"IntBuildingInstallation", Tag::indoor}, {"InteriorWallSurface", Tag::indoor}, {"CeilingSurface", Tag::indoor},
       {"FloorSurface", Tag::indoor}, {"BuildingInstallation", Tag::installation}, {"tin", Tag::tin},
@@ -43,10 +46,24 @@ Tag tag_of(std::string_view name) {
   if (surface_class_of(name)) return Tag::boundary;
   if (name.size() > 4 && name.starts_with("lod") && name[3] >= '0' && name[3] <= '4') {
     const std::string_view kind = name.substr(4);
-    const bool surfaces = kind == "Solid" || kind == "MultiSurface" || kind == "Geometry" || kind == "Surface" || kind == "ImplicitRepresentation";
+    const bool surfaces = kind == "Solid" || kind == "MultiSurface" || kind == "MultiSolid" || kind == "Geometry" || kind == "Surface" || kind == "ImplicitRepresentation";
     return surfaces && name[3] != '0' ? Tag::lod_property : Tag::geometry_off;
   }
   return Tag::other;
+}
+
+std::optional<ModelKind> kind_of(Tag tag) {
+  switch (tag) {
+    case Tag::building: return ModelKind::building;
+    case Tag::bridge: return ModelKind::bridge;
+    case Tag::vegetation: return ModelKind::vegetation;
+    case Tag::terrain: return ModelKind::terrain;
+    default: return std::nullopt;
+  }
+}
+
+bool is_wanted(std::optional<ModelKind> kind, const BuildingModelOptions& options) {
+  return kind && (kind != ModelKind::bridge || options.bridges) && (kind != ModelKind::vegetation || options.vegetation);
 }
 
 std::string_view local_name(const char* name) {
@@ -71,13 +88,13 @@ bool parse_numbers(std::string_view text, std::vector<double>& values) {
   }
 }
 
-/// One pass over a file. Calls `building` at the end of each building or TIN; with `everything`, of each city object, whatever its kind.
+/// One pass over a file. Calls `finished` at the end of each building, bridge, plant or TIN; with `everything`, of each city object, whatever its kind.
 class CityGmlPass {
  public:
   using Finished = std::function<void(BuildingModel&&, GeometryItems&&)>;
 
-  CityGmlPass(const std::filesystem::path& file, bool everything, GeometryItems& templates, Finished finished)
-      : file_(file), everything_(everything), templates_(templates), finished_(std::move(finished)), frames_(max_depth + 1) {}
+  CityGmlPass(const std::filesystem::path& file, const BuildingModelOptions& options, bool everything, GeometryItems& templates, Finished finished)
+      : file_(file), options_(options), everything_(everything), templates_(templates), finished_(std::move(finished)), frames_(max_depth + 1) {}
 
   void run() {
     const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), &XML_ParserFree);
@@ -152,7 +169,7 @@ class CityGmlPass {
       else if (key == "srsDimension") dimension_ = std::strcmp(attribute[1], "2") == 0 ? 2 : 3;
     }
 
-    const bool opens_feature = feature_depth_ == 0 && (frame.tag == Tag::building || frame.tag == Tag::terrain || (everything_ && depth_ == 3));
+    const bool opens_feature = feature_depth_ == 0 && (is_wanted(kind_of(frame.tag), options_) || (everything_ && depth_ == 3));
     if (opens_feature) begin_feature(frame);
     if (feature_depth_ == 0) {
       if (frame.tag == Tag::envelope && !frame.srs_name.empty()) document_srs_ = frame.srs_name;
@@ -166,7 +183,7 @@ class CityGmlPass {
     feature_depth_ = depth_;
     model_ = BuildingModel{};
     model_.id = frame.id;
-    model_.terrain = frame.tag == Tag::terrain;
+    model_.kind = kind_of(frame.tag).value_or(ModelKind::building);
     geometry_ = GeometryItems{};
     context_ = GeometryContext{};
     geometry_on_ = everything_;
@@ -336,6 +353,7 @@ class CityGmlPass {
   }
 
   const std::filesystem::path& file_;
+  const BuildingModelOptions& options_;
   const bool everything_;
   GeometryItems& templates_;
   const Finished finished_;
@@ -366,7 +384,7 @@ class CityGmlPass {
 };
 
 /// Adds to `shared` what other city objects state under the wanted ids. @return how many were found
-std::size_t collect_shared(const std::filesystem::path& file, const std::unordered_set<std::string>& wanted, GeometryItems& shared) {
+std::size_t collect_shared(const std::filesystem::path& file, const BuildingModelOptions& options, const std::unordered_set<std::string>& wanted, GeometryItems& shared) {
   std::size_t found = 0;
   auto collect = [&](BuildingModel&&, GeometryItems&& geometry) {
     for (const auto& [id, range] : geometry.ranges) {
@@ -378,7 +396,7 @@ std::size_t collect_shared(const std::filesystem::path& file, const std::unorder
       ++found;
     }
   };
-  CityGmlPass(file, true, shared, collect).run();
+  CityGmlPass(file, options, true, shared, collect).run();
   return found;
 }
 
@@ -394,7 +412,7 @@ void read_citygml(const std::filesystem::path& file, const BuildingModelOptions&
     sink(std::move(model));
   };
 
-  CityGmlPass(file, false, shared, [&](BuildingModel&& model, GeometryItems&& geometry) {
+  CityGmlPass(file, options, false, shared, [&](BuildingModel&& model, GeometryItems&& geometry) {
     bool complete = true;
     for (const std::string& id : missing_references(geometry)) {
       if (shared.ranges.contains(id)) continue;
@@ -406,7 +424,7 @@ void read_citygml(const std::filesystem::path& file, const BuildingModelOptions&
   }).run();
 
   for (int pass = 1; pass < max_passes && !wanted.empty(); ++pass) {
-    if (collect_shared(file, wanted, shared) == 0) break;
+    if (collect_shared(file, options, wanted, shared) == 0) break;
     wanted.clear();
     for (const std::string& id : missing_references(shared)) wanted.insert(id);
   }

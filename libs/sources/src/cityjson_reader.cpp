@@ -32,8 +32,17 @@ int lod_of(const json& geometry) {
   return value >= 0 && value < 10 ? static_cast<int>(std::lround(value * 10)) : 0;
 }
 
-bool is_building(const std::string& type) { return type == "Building" || type == "BuildingPart" || type == "BuildingInstallation"; }
-bool is_terrain(const std::string& type) { return type == "TINRelief"; }
+/// What an object is, or is a member of.
+std::optional<ModelKind> kind_of(const std::string& type) {
+  static const std::unordered_map<std::string, ModelKind> kinds = {
+      {"Building", ModelKind::building}, {"BuildingPart", ModelKind::building}, {"BuildingInstallation", ModelKind::building},
+      {"Bridge", ModelKind::bridge}, {"BridgePart", ModelKind::bridge}, {"BridgeInstallation", ModelKind::bridge},
+      {"BridgeConstructionElement", ModelKind::bridge}, {"BridgeConstructiveElement", ModelKind::bridge},
+      {"SolitaryVegetationObject", ModelKind::vegetation}, {"PlantCover", ModelKind::vegetation}, {"TINRelief", ModelKind::terrain},
+  };
+  const auto found = kinds.find(type);
+  return found == kinds.end() ? std::nullopt : std::optional(found->second);
+}
 
 /// What all objects of a file share.
 struct Document {
@@ -193,7 +202,7 @@ class Buildings {
 
   /// First pass: who belongs to whom.
   void announce(const std::string& id, const json& object) {
-    if (!is_building(type_of(object))) return;
+    if (!kind_of(object)) return;
     std::string parent;
     const auto parents = object.find("parents");
     if (parents != object.end() && parents->is_array() && !parents->empty() && (*parents)[0].is_string()) parent = (*parents)[0].get<std::string>();
@@ -205,29 +214,26 @@ class Buildings {
 
   /// Second pass: the geometry; a building goes out when its last member has come.
   void add(const std::string& id, const json& object) {
-    const std::string type = type_of(object);
-    if (is_terrain(type)) {
-      GeometryItems items;
-      GeometryReader(document_, 0, true, items).read(object.value("geometry", json::array()));
-      emit(id, true, std::move(items));
-      return;
-    }
-    if (!is_building(type)) return;
+    const std::optional<ModelKind> kind = kind_of(object);
+    if (!kind) return;
     const std::string building = root(id);
     Members& members = members_[building];
     const int number = id == building ? 0 : ++members.num_parts;
-    GeometryReader(document_, number, false, members.items).read(object.value("geometry", json::array()));
+    GeometryReader(document_, number, kind == ModelKind::terrain, members.items).read(object.value("geometry", json::array()));
     if (++members.seen < members.expected) return;
-    emit(building, false, std::move(members.items));
+    emit(building, *kind, std::move(members.items));
     members_.erase(building);
   }
 
  private:
   struct Members { std::size_t expected = 0, seen = 0; int num_parts = 0; GeometryItems items; };
 
-  static std::string type_of(const json& object) {
+  /// Nothing for what nobody wants.
+  std::optional<ModelKind> kind_of(const json& object) const {
     const auto type = object.find("type");
-    return type != object.end() && type->is_string() ? type->get<std::string>() : "";
+    const auto kind = type != object.end() && type->is_string() ? priormap::kind_of(type->get<std::string>()) : std::nullopt;
+    if ((kind == ModelKind::bridge && !options_.bridges) || (kind == ModelKind::vegetation && !options_.vegetation)) return std::nullopt;
+    return kind;
   }
 
   std::string root(std::string id) const {
@@ -239,10 +245,10 @@ class Buildings {
     return id;
   }
 
-  void emit(const std::string& id, bool terrain, GeometryItems&& items) {
+  void emit(const std::string& id, ModelKind kind, GeometryItems&& items) {
     BuildingModel model;
     model.id = id;
-    model.terrain = terrain;
+    model.kind = kind;
     model.srs_name = document_.srs_name;
     assemble(std::move(items), GeometryItems{}, options_, model);
     sink_(std::move(model));

@@ -69,6 +69,35 @@ TEST(CityGml, EveryPartAndSurfaceMayStateItsEnvelopeAndIsStillOfItsBuilding) {
   EXPECT_EQ(models[1].polygons.size(), 1u);
 }
 
+TEST(CityGml, BridgesHaveTheirPartsAndElementsAndNoRooms) {
+  const auto at = [](const std::string& property, double z) { return "<brid:" + property + "><gml:MultiSurface>" + member(square("", z)) + "</gml:MultiSurface></brid:" + property + ">"; };
+  const std::string bridge =
+      "<core:cityObjectMember><brid:Bridge gml:id='span'><brid:boundedBy><brid:RoofSurface>" + at("lod2MultiSurface", 5) + "</brid:RoofSurface></brid:boundedBy>"
+      "<brid:outerBridgeConstruction><brid:BridgeConstructionElement>" + at("lod2Geometry", 1) + "</brid:BridgeConstructionElement></brid:outerBridgeConstruction>"
+      "<brid:consistsOfBridgePart><brid:BridgePart>" + at("lod2MultiSurface", 6) + "</brid:BridgePart></brid:consistsOfBridgePart>"
+      "<brid:interiorBridgeRoom><brid:BridgeRoom>" + at("lod4MultiSurface", 3) + "</brid:BridgeRoom></brid:interiorBridgeRoom></brid:Bridge></core:cityObjectMember>";
+  const auto models = read(document(bridge + building(solid(member(square("", 0))))));
+  ASSERT_EQ(models.size(), 2u);
+  EXPECT_EQ(models[0].kind, ModelKind::bridge);
+  EXPECT_EQ(models[0].polygons.size(), 3u);
+  EXPECT_EQ(models[1].kind, ModelKind::building);
+  EXPECT_EQ(read(document(bridge), {.bridges = false}).size(), 0u);
+}
+
+TEST(CityGml, PlantsAreReadWhereWanted) {
+  const std::string tree = "<core:cityObjectMember><veg:SolitaryVegetationObject gml:id='oak'><veg:lod2Geometry><gml:MultiSurface>" + member(square("", 7)) +
+                           "</gml:MultiSurface></veg:lod2Geometry></veg:SolitaryVegetationObject></core:cityObjectMember>";
+  const std::string hedge = "<core:cityObjectMember><veg:PlantCover gml:id='hedge'><veg:lod1MultiSolid><gml:MultiSolid><gml:solidMember><gml:Solid><gml:exterior><gml:CompositeSurface>" +
+                            member(square("", 1)) + "</gml:CompositeSurface></gml:exterior></gml:Solid></gml:solidMember></gml:MultiSolid></veg:lod1MultiSolid></veg:PlantCover></core:cityObjectMember>";
+  const auto models = read(document(tree + hedge));
+  ASSERT_EQ(models.size(), 2u);
+  for (const BuildingModel& model : models) {
+    EXPECT_EQ(model.kind, ModelKind::vegetation);
+    EXPECT_EQ(model.polygons.size(), 1u) << model.id;
+  }
+  EXPECT_EQ(read(document(tree + hedge), {.vegetation = false}).size(), 0u);
+}
+
 TEST(CityGml, TheHighestLevelOfEachPartIsTakenUnlessOneIsAskedFor) {
   const std::string part = "<bldg:consistsOfBuildingPart><bldg:BuildingPart gml:id='part'>" + solid(member(square("", 5, 2)), 1) +
                            surface("RoofSurface", member(square("", 7, 3))) + "</bldg:BuildingPart></bldg:consistsOfBuildingPart>";

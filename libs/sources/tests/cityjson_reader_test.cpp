@@ -53,6 +53,21 @@ TEST(CityJson, AmongLevelsOfOneMajorNumberTheFinestCounts) {
   EXPECT_NEAR(areas.at(SurfaceClass::wall), 1.5, 1e-6);
 }
 
+TEST(CityJson, BridgesHaveTheirMembersAndPlantsAreReadWhereWanted) {
+  const std::string surface = R"("geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2,3]]]}])", triangle = R"("geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,4]]]}])";
+  const std::string text = "{" + head + "," + vertices + R"(,"CityObjects":{"span":{"type":"Bridge","children":["pier"],)" + surface + R"(},
+    "pier":{"type":"BridgeConstructiveElement","parents":["span"],)" + triangle + R"(},"room":{"type":"BridgeRoom","parents":["span"],)" + surface + R"(},
+    "oak":{"type":"SolitaryVegetationObject",)" + triangle + R"(},"hedge":{"type":"PlantCover",)" + surface + "}}}";
+  const auto models = read(text);
+  ASSERT_EQ(models.size(), 3u);
+  for (const BuildingModel& model : models) {
+    EXPECT_EQ(model.kind, model.id == "span" ? ModelKind::bridge : ModelKind::vegetation) << model.id;
+    EXPECT_EQ(model.polygons.size(), model.id == "span" ? 2u : 1u) << model.id;
+  }
+  EXPECT_EQ(read(text, {.vegetation = false}).size(), 1u);
+  EXPECT_EQ(read(text, {.bridges = false}).size(), 2u);
+}
+
 TEST(CityJson, EveryVersionsWayToNameCrsAndLevelIsRead) {
   const std::string objects = R"("CityObjects":{"b":{"type":"Building","geometry":[{"type":"Solid","lod":LOD,"boundaries":[[[[0,1,2,3]]]]}]}})";
   const auto text = [&](const std::string& version, const std::string& crs, const std::string& lod, const std::string& transform) {
@@ -82,7 +97,7 @@ TEST(CityJson, TemplatesArePlacedAndTinReliefIsTerrain) {
   ASSERT_EQ(models.size(), 2u);
   EXPECT_NEAR(polygon_area(models[0].polygons[0].polygon), 2.0, 1e-6);
   EXPECT_DOUBLE_EQ(models[0].polygons[0].polygon.exterior[0].x(), 500001.0);
-  EXPECT_TRUE(models[1].terrain);
+  EXPECT_EQ(models[1].kind, ModelKind::terrain);
   EXPECT_EQ(models[1].polygons[0].surface_class, SurfaceClass::terrain);
 }
 

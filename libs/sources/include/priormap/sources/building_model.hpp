@@ -17,18 +17,26 @@ struct ModelPolygon {
   bool closed = true;                                       ///< every ring repeated its first point (CityJSON: by definition)
 };
 
-/// One building of CityGML or CityJSON with its parts, or a terrain TIN, at one level of detail.
+enum class ModelKind {
+  building,
+  bridge,
+  vegetation,   ///< a SolitaryVegetationObject or PlantCover
+  terrain,      ///< a TINRelief
+};
+
+/// One building or bridge of CityGML or CityJSON with its parts, a plant, or a terrain TIN, at one level of detail.
 struct BuildingModel {
   std::string id;          ///< gml:id or CityJSON key; "feature-N" where the file gives none
   int lod = 0;             ///< the highest major level among its polygons
-  bool terrain = false;    ///< a TINRelief
+  ModelKind kind = ModelKind::building;
   std::string srs_name;    ///< as the file writes it, inherited from any level; empty: none
   std::vector<ModelPolygon> polygons;
   std::size_t unresolved_references = 0;   ///< xlinks to ids that the file does not hold
 };
 
 struct BuildingModelOptions {
-  std::optional<int> lod;  ///< only this level; default: of the building and each part the highest it has
+  std::optional<int> lod = {};     ///< only this level; default: of the building and each part the highest it has
+  bool bridges = true, vegetation = true;   ///< whether to read them
 };
 
 using BuildingModelSink = std::function<void(BuildingModel&&)>;

@@ -5,7 +5,7 @@
 
 namespace priormap {
 
-/// Streams the buildings (Building with its BuildingParts and installations) and terrain TINs of a CityGML 1.0, 2.0 or 3.0
+/// Streams the buildings and bridges (with their parts, installations and construction elements), plants and terrain TINs of a CityGML 1.0, 2.0 or 3.0
 /// file (OGC 08-007, 12-019, 20-010), .gml, .xml or gzip-compressed. Memory holds one building at a time, the templates of
 /// implicit geometry, and buildings that refer to geometry outside themselves (those follow last, after a second pass).
 ///

@@ -13,7 +13,7 @@ enum class CityJsonLayout {
 /// By name: .jsonl and .ndjson are sequences.
 CityJsonLayout cityjson_layout(const std::filesystem::path& file);
 
-/// Streams the buildings and TINReliefs of CityJSON 1.0 to 2.0 or CityJSONSeq (CityJSON specification 2.0.1): transform, LoD
+/// Streams the buildings, bridges, plants and TINReliefs of CityJSON 1.0 to 2.0 or CityJSONSeq (CityJSON specification 2.0.1): transform, LoD
 /// strings ("2.2" counts above "2"), geometry templates, semantic surfaces, CRS URLs. The vertices of a CityJSON file are
 /// held in memory (24 bytes each), its city objects are not.
 /// @throws IoError; FormatError: not JSON (with the place), no CityJSON, an index outside the vertices, nesting deeper than 64.
