@@ -93,7 +93,8 @@ void read_project_triangulate(benchmark::State& state) {
     Diagnostics diagnostics;
     const auto projected = project_footprints(read_osm_footprints({file}, threads, diagnostics), prior_from_outlines, threads, diagnostics);
     parallel_for(projected.size(), threads, [&](std::size_t i) {
-      for (const Polygon2& polygon : projected[i].polygons) benchmark::DoNotOptimize(triangulate(polygon));
+      const ProjectedFootprint footprint = projected[i];
+      for (const Polygon2& polygon : footprint.polygons) benchmark::DoNotOptimize(triangulate(polygon));
     });
     buildings += projected.size();
   }

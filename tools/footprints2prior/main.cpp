@@ -1,5 +1,4 @@
 #include <iostream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -14,12 +13,8 @@ using namespace priormap;
 
 OutlineInput read_input(const std::vector<std::string>& inputs, const FootprintFields& fields, Diagnostics& diagnostics) {
   OutlineInput input{{}, distinct_files({inputs.begin(), inputs.end()}), {}, "footprints", "", ""};
-  for (std::size_t i = 0; i < input.files.size(); ++i) {
-    FootprintLayers layers = read_ogr_footprints(input.files[i].path, fields, diagnostics);
-    for (Footprint& footprint : layers.footprints) footprint.file = static_cast<std::uint16_t>(i);
-    std::ranges::move(layers.footprints, std::back_inserter(input.footprints));
-    input.crs.push_back(layers.crs);
-  }
+  for (std::size_t i = 0; i < input.files.size(); ++i)
+    input.crs.push_back(read_ogr_footprints(input.files[i].path, fields, diagnostics, input.footprints, static_cast<std::uint16_t>(i)));
   return input;
 }
 

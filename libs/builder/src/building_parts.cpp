@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include <priormap/builder/bounds_index.hpp>
+#include <iterator>
+#include <map>
 
 namespace priormap {
 namespace {
@@ -37,34 +37,30 @@ double share_inside(const std::vector<Eigen::Vector2d>& places, const std::vecto
 
 }  // namespace
 
-PartAssignment assign_parts(std::span<const ProjectedFootprint> footprints) {
+PartAssignment assign_parts(const ProjectedFootprints& footprints) {
   PartAssignment assignment{std::vector<bool>(footprints.size(), false), std::vector<std::uint32_t>(footprints.size(), PartAssignment::no_outline)};
-  BoundsIndex outlines;
-  for (std::uint32_t i = 0; i < footprints.size(); ++i)
-    if (footprints[i].footprint.kind == Footprint::Kind::outline && !footprints[i].polygons.empty()) outlines.add(footprints[i].bounds, i);
-  outlines.sort();
-
-  std::vector<std::vector<std::uint32_t>> parts_of(footprints.size());
-  for (std::uint32_t part = 0; part < footprints.size(); ++part) {
-    if (footprints[part].footprint.kind != Footprint::Kind::part || footprints[part].polygons.empty()) continue;
-    const std::vector<Eigen::Vector2d> places = places_inside(footprints[part]);
+  std::map<std::uint32_t, std::vector<std::uint32_t>> parts_of;
+  for (std::uint32_t i = 0; i < footprints.size(); ++i) {
+    if (footprints.kind(i) != Footprint::Kind::part || footprints.is_empty(i)) continue;
+    const ProjectedFootprint part = footprints[i];
+    const std::vector<Eigen::Vector2d> places = places_inside(part);
     double best_share = 0.5;
-    for (const std::uint32_t outline : outlines.meeting(footprints[part].bounds)) {
-      if (!may_belong(footprints[part].footprint, footprints[outline].footprint)) continue;
-      const bool tied = footprints[part].footprint.building != Footprint::no_building;
-      const double share = tied ? 1 : share_inside(places, footprints[outline].polygons);
+    for (const std::uint32_t other : footprints.meeting(part.bounds)) {
+      if (footprints.kind(other) != Footprint::Kind::outline) continue;
+      const ProjectedFootprint outline = footprints[other];
+      if (!may_belong(part.footprint, outline.footprint)) continue;
+      const bool tied = part.footprint.building != Footprint::no_building;
+      const double share = tied ? 1 : share_inside(places, outline.polygons);
       if (share < best_share) continue;
       best_share = share;
-      assignment.outline_of[part] = outline;
+      assignment.outline_of[i] = other;
     }
-    if (assignment.outline_of[part] != PartAssignment::no_outline) parts_of[assignment.outline_of[part]].push_back(part);
+    if (assignment.outline_of[i] != PartAssignment::no_outline) parts_of[assignment.outline_of[i]].push_back(i);
   }
 
-  for (std::uint32_t outline = 0; outline < footprints.size(); ++outline) {
-    if (parts_of[outline].empty()) continue;
+  for (const auto& [outline, numbers] : parts_of) {
     std::vector<Polygon2> parts;
-    for (const std::uint32_t part : parts_of[outline])
-      parts.insert(parts.end(), footprints[part].polygons.begin(), footprints[part].polygons.end());
+    for (const std::uint32_t part : numbers) std::ranges::move(footprints[part].polygons, std::back_inserter(parts));
     assignment.replaced[outline] = share_inside(places_inside(footprints[outline]), parts) >= filled_share;
   }
   return assignment;

@@ -24,6 +24,7 @@
 #include "model_faces.hpp"
 #include "model_frame.hpp"
 #include "model_sight.hpp"
+#include "visible_points.hpp"
 #include "wall_index.hpp"
 
 namespace priormap {
@@ -121,22 +122,13 @@ class ModelSampler {
     SightCounts counts;
     std::optional<std::uint32_t> feature;
     const auto write_collected = [&] {
-      std::vector<bool> seen;
-      if (sight_) seen = sight_->seen(collected_, LineOfSight::Skin::open);
-      for (std::size_t i = 0; i < collected_.points.size(); ++i) {
-        const Eigen::Vector3d& p = collected_.points[i];
-        if (bbox_.is_active() && !bbox_.contains(p.x(), p.y())) continue;
-        ++counts.sampled;
-        if (sight_ && !seen[i]) {
-          ++counts.out_of_sight;
-          continue;
-        }
+      counts += for_each_visible(collected_, bbox_, sight_, LineOfSight::Skin::open, [&](const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
         if (!feature) {
           feature = is_terrain ? PointCloud::no_feature : writer_.add_feature(feature_of(model, faces, source_id, sigma_m));
           buffer_.begin(source, *feature, class_of(model.kind));
         }
-        buffer_.add(p, collected_.normals[i], sigma_m);
-      }
+        buffer_.add(p, normal, sigma_m);
+      });
       collected_.clear();
     };
     for (std::uint32_t number = 0; number < faces.size(); ++number) {

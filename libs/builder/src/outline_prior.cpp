@@ -4,6 +4,7 @@
 #include <iomanip>
 #include <iterator>
 #include <sstream>
+#include <utility>
 
 #include <priormap/builder/prior_crs.hpp>
 #include <priormap/core/error.hpp>
@@ -15,20 +16,6 @@
 
 namespace priormap {
 namespace {
-
-/// Counts of what stands on the map, of one file.
-OutlineCounts count(const std::vector<Building>& buildings, const PartAssignment& parts, std::optional<std::uint16_t> file) {
-  OutlineCounts counts;
-  for (std::size_t i = 0; i < buildings.size(); ++i) {
-    const Building& building = buildings[i];
-    if (file && building.file != *file) continue;
-    counts.replaced += parts.replaced[i];
-    if (building.solids.empty()) continue;
-    ++(building.is_part ? counts.parts : counts.outlines);
-    ++counts.by_rule[static_cast<std::size_t>(building.rule)];
-  }
-  return counts;
-}
 
 std::vector<std::pair<std::string, std::string>> facts_of(const OutlineCounts& counts, const OutlineOptions& options) {
   std::vector<std::pair<std::string, std::string>> facts{{"outlines", std::to_string(counts.outlines)},
@@ -76,7 +63,27 @@ PriorManifest manifest_of(const OutlineFrames& frames, const PriorOptions& optio
   return manifest;
 }
 
+/// From outlines to points in the writer's hands; what it takes of memory is gone when it returns.
+std::vector<WrittenBuildings> write_outlines(FootprintList outlines, const OutlineFrames& frames, const std::vector<PriorSource>& sources, const PriorOptions& prior_options,
+                                             const OutlineOptions& outline_options, PriorWriter& writer, Diagnostics& diagnostics, int threads, const Events& events) {
+  const ProjectedFootprints footprints = project_footprints(outlines, frames.prior_from_outlines, threads, diagnostics);
+  outlines = FootprintList();
+  const PartAssignment parts = assign_parts(footprints);
+  const std::optional<LineOfSight> sight = line_of_sight(footprints, parts, frames, outline_options);
+  std::vector<std::string> source_ids;
+  for (const PriorSource& source : sources) source_ids.push_back(source.id);
+  return write_buildings(footprints, parts, frames, source_ids, sight ? &*sight : nullptr, prior_options, outline_options, writer, diagnostics, threads, events);
+}
+
 }  // namespace
+
+OutlineCounts& OutlineCounts::operator+=(const OutlineCounts& other) {
+  outlines += other.outlines;
+  parts += other.parts;
+  replaced += other.replaced;
+  for (std::size_t i = 0; i < by_rule.size(); ++i) by_rule[i] += other.by_rule[i];
+  return *this;
+}
 
 std::vector<HashedFile> distinct_files(const std::vector<std::filesystem::path>& files) {
   std::vector<HashedFile> hashed;
@@ -101,27 +108,20 @@ OutlineReport build_outline_prior(OutlineInput input, const PriorOptions& prior_
   for (std::size_t i = 0; i < input.files.size(); ++i) sources.push_back(source_of(input, i, frames, prior_options, outline_options));
   PriorWriter writer(output, manifest_of(frames, prior_options, sources, generator), overwrite);
 
-  std::vector<ProjectedFootprint> footprints = project_footprints(std::move(input.footprints), frames.prior_from_outlines, threads, diagnostics);
-  const PartAssignment parts = assign_parts(footprints);
-  std::vector<Building> buildings = raise_buildings(footprints, parts, frames, outline_options, threads, diagnostics);
-  footprints = {};   // what follows needs the memory
-  for (Building& building : buildings) building.feature.source = sources[building.file].id;
-  for (std::size_t i = 0; i < sources.size(); ++i) sources[i].facts = facts_of(count(buildings, parts, static_cast<std::uint16_t>(i)), outline_options);
-  const OutlineCounts counts = count(buildings, parts, std::nullopt);
-  const std::optional<LineOfSight> sight = line_of_sight(buildings, frames, outline_options.sight);
-  const std::vector<SightCounts> sight_by_file =
-      write_points(std::move(buildings), sight ? &*sight : nullptr, frames.prior, prior_options, outline_options, sources.size(), writer, threads, events);
-  SightCounts points;
+  const std::vector<WrittenBuildings> written =
+      write_outlines(std::exchange(input.footprints, {}), frames, sources, prior_options, outline_options, writer, diagnostics, threads, events);
+  WrittenBuildings all;
   for (std::size_t i = 0; i < sources.size(); ++i) {
-    points += sight_by_file[i];
-    std::ranges::move(sight_facts(outline_options.sight, sight_by_file[i]), std::back_inserter(sources[i].facts));
+    all += written[i];
+    sources[i].facts = facts_of(written[i].counts, outline_options);
+    std::ranges::move(sight_facts(outline_options.sight, written[i].points), std::back_inserter(sources[i].facts));
   }
-  if (points.sampled == 0)
+  if (all.points.sampled == 0)
     throw FormatError(input.files.front().path, prior_options.bbox.empty() ? "none of its buildings could be built"
                                                                            : "no building lies inside --bbox (W,S,E,N in " + prior_options.bbox_crs + ")");
-  if (prior_options.bbox.empty()) outline_options.sight.refuse_blindness(points);   // a box may well hold nothing that is seen
+  if (prior_options.bbox.empty()) outline_options.sight.refuse_blindness(all.points);   // a box may well hold nothing that is seen
   writer.set_sources(sources);
-  return {writer.finish(threads, events), counts, sight ? std::optional(points) : std::nullopt, std::move(diagnostics)};
+  return {writer.finish(threads, events), all.counts, outline_options.sight.is_active() ? std::optional(all.points) : std::nullopt, std::move(diagnostics)};
 }
 
 std::string to_text(const OutlineReport& report) {

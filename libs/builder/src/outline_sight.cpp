@@ -13,10 +13,12 @@ constexpr double sure_share = 0.5;   // of a guessed height: what lies behind ma
 bool is_guess(HeightRule rule) { return rule == HeightRule::levels || rule == HeightRule::fallback; }
 
 /// What surely hides the view: no canopies.
-TriangleMesh occluders(const std::vector<Building>& buildings) {
+TriangleMesh occluders(std::size_t num_footprints, const BuildingRaiser& raiser) {
   TriangleMesh mesh;
-  for (const Building& building : buildings)
-    for (BuildingSolid solid : building.solids) {
+  Diagnostics ignored;   // reported by those who write the building
+  for (std::uint32_t i = 0; i < num_footprints; ++i) {
+    Building building = raiser.raise(i, ignored);
+    for (BuildingSolid& solid : building.solids) {
       if (!solid.has_walls) continue;
       if (is_guess(building.rule)) {
         solid.roof.reset();
@@ -24,19 +26,20 @@ TriangleMesh occluders(const std::vector<Building>& buildings) {
       }
       for (const Face& face : solid.faces(true)) mesh.append(triangulate(face.polygon));
     }
+  }
   return mesh;
 }
 
 }  // namespace
 
-std::optional<LineOfSight> line_of_sight(const std::vector<Building>& buildings, const OutlineFrames& frames, const SightOptions& options) {
-  if (!options.is_active()) return std::nullopt;
+std::optional<LineOfSight> line_of_sight(const ProjectedFootprints& footprints, const PartAssignment& parts, const OutlineFrames& frames, const OutlineOptions& options) {
+  if (!options.sight.is_active()) return std::nullopt;
   std::vector<Eigen::Vector3d> viewpoints;
-  for (const Eigen::Vector2d& place : places_along_axis(options.visible_from, frames.prior)) {
+  for (const Eigen::Vector2d& place : places_along_axis(options.sight.visible_from, frames.prior)) {
     const std::optional<double> ground_z = frames.ground.at(place);
-    viewpoints.emplace_back(place.x(), place.y(), ground_z ? *ground_z + options.sensor_height_m : std::numeric_limits<double>::quiet_NaN());
+    viewpoints.emplace_back(place.x(), place.y(), ground_z ? *ground_z + options.sight.sensor_height_m : std::numeric_limits<double>::quiet_NaN());
   }
-  return LineOfSight(std::move(viewpoints), occluders(buildings), options.view_range_m);
+  return LineOfSight(std::move(viewpoints), occluders(footprints.size(), BuildingRaiser(footprints, parts, frames, options)), options.sight.view_range_m);
 }
 
 }  // namespace priormap

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <mutex>
 
 #include <priormap/geodesy/interpolated_transformer.hpp>
 #include <priormap/tessellation/normalize.hpp>
@@ -66,24 +67,31 @@ ProjectedFootprint in_order(Footprint&& footprint, Diagnostics& diagnostics) {
     diagnostics.add(DiagnosticCode::implausible_size, footprint.id, "larger than any building; left out");
     projected.polygons.clear();
   }
-  footprint.rings = {};
+  footprint.rings.clear();
   projected.footprint = std::move(footprint);
   return projected;
 }
 
 }  // namespace
 
-std::vector<ProjectedFootprint> project_footprints(std::vector<Footprint> footprints, const std::vector<Transformer>& prior_from_outlines, int threads,
-                                                   Diagnostics& diagnostics) {
-  std::vector<ProjectedFootprint> projected(footprints.size());
-  std::vector<Diagnostics> of_chunk((footprints.size() + chunk_size - 1) / chunk_size);
+ProjectedFootprints project_footprints(const FootprintList& footprints, const std::vector<Transformer>& prior_from_outlines, int threads, Diagnostics& diagnostics) {
+  ProjectedFootprints projected(footprints.size());
+  std::mutex mutex;
   for_each_chunk(
       footprints.size(), chunk_size, threads, [&] { return std::vector<InterpolatedTransformer>(prior_from_outlines.begin(), prior_from_outlines.end()); },
-      [&](std::vector<InterpolatedTransformer>& transformers, std::size_t chunk, std::size_t begin, std::size_t end) {
-        transform_by_file(std::span(footprints).subspan(begin, end - begin), transformers);
-        for (std::size_t i = begin; i < end; ++i) projected[i] = in_order(std::move(footprints[i]), of_chunk[chunk]);
+      [&](std::vector<InterpolatedTransformer>& transformers, std::size_t, std::size_t begin, std::size_t end) {
+        std::vector<Footprint> some;
+        for (std::size_t i = begin; i < end; ++i) some.push_back(footprints[i]);
+        transform_by_file(some, transformers);
+        Diagnostics found;
+        for (std::size_t i = begin; i < end; ++i) {
+          found.set_rank(i + 1);
+          projected.put(i, in_order(std::move(some[i - begin]), found));
+        }
+        const std::lock_guard lock(mutex);
+        diagnostics.merge(found);
       });
-  for (const Diagnostics& some : of_chunk) diagnostics.merge(some);
+  projected.sort();
   return projected;
 }
 

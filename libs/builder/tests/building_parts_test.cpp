@@ -6,6 +6,13 @@
 namespace priormap {
 namespace {
 
+PartAssignment assign(const std::vector<ProjectedFootprint>& footprints) {
+  ProjectedFootprints list(footprints.size());
+  for (std::size_t i = 0; i < footprints.size(); ++i) list.put(i, footprints[i]);
+  list.sort();
+  return assign_parts(list);
+}
+
 ProjectedFootprint box(double west, double south, double east, double north, Footprint::Kind kind, std::uint32_t building = Footprint::no_building) {
   ProjectedFootprint footprint{{}, {{{{west, south}, {east, south}, {east, north}, {west, north}}, {}}}, {west, south, east, north}};
   footprint.footprint.kind = kind;
@@ -15,28 +22,28 @@ ProjectedFootprint box(double west, double south, double east, double north, Foo
 constexpr auto outline = Footprint::Kind::outline, part = Footprint::Kind::part;
 
 TEST(BuildingParts, FillTheirOutlineByArea) {
-  const PartAssignment filled = assign_parts(std::vector{box(0, 0, 20, 10, outline), box(0, 0, 12, 10, part), box(12, 0, 19.5, 10, part)});
+  const PartAssignment filled = assign(std::vector{box(0, 0, 20, 10, outline), box(0, 0, 12, 10, part), box(12, 0, 19.5, 10, part)});
   EXPECT_TRUE(filled.replaced[0]);
   EXPECT_EQ(filled.outline_of[1], 0u);
   EXPECT_EQ(filled.outline_of[2], 0u);
 }
 
 TEST(BuildingParts, ATowerOnABlockLeavesTheBlock) {
-  EXPECT_FALSE(assign_parts(std::vector{box(0, 0, 20, 10, outline), box(0, 0, 6, 6, part)}).replaced[0]);
+  EXPECT_FALSE(assign(std::vector{box(0, 0, 20, 10, outline), box(0, 0, 6, 6, part)}).replaced[0]);
 }
 
 TEST(BuildingParts, PartsThatLieOnEachOtherCountOnce) {
-  EXPECT_FALSE(assign_parts(std::vector{box(0, 0, 20, 10, outline), box(0, 0, 10, 10, part), box(0, 0, 10, 10, part)}).replaced[0]);
+  EXPECT_FALSE(assign(std::vector{box(0, 0, 20, 10, outline), box(0, 0, 10, 10, part), box(0, 0, 10, 10, part)}).replaced[0]);
 }
 
 TEST(BuildingParts, APartBesideEveryOutlineStandsAlone) {
-  const PartAssignment alone = assign_parts(std::vector{box(0, 0, 20, 10, outline), box(20, 0, 30, 10, part)});
+  const PartAssignment alone = assign(std::vector{box(0, 0, 20, 10, outline), box(20, 0, 30, 10, part)});
   EXPECT_EQ(alone.outline_of[1], PartAssignment::no_outline);
   EXPECT_FALSE(alone.replaced[0]);
 }
 
 TEST(BuildingParts, ARelationTiesPartsToItsOwnOutline) {
-  const PartAssignment tied = assign_parts(std::vector{box(0, 0, 20, 10, outline, 1), box(0, 0, 20, 10, outline, 2), box(0, 0, 20, 10, part, 2)});
+  const PartAssignment tied = assign(std::vector{box(0, 0, 20, 10, outline, 1), box(0, 0, 20, 10, outline, 2), box(0, 0, 20, 10, part, 2)});
   EXPECT_FALSE(tied.replaced[0]);
   EXPECT_TRUE(tied.replaced[1]);
   EXPECT_EQ(tied.outline_of[2], 1u);

@@ -98,15 +98,32 @@ TEST_F(OutlinePrior, ARoofIsAsUncertainAsTheRuleThatGaveItsHeight) {
   town[1].attributes.levels = 3;
   build(town);
   const PriorStore store(folder_ / "prior");
+  const auto features = store.features();
   std::map<std::string, std::set<float>> walls, roofs;
   for (const TileEntry& tile : store.tiles()) {
     const PointCloud points = store.load(tile.key).points;
-    for (std::size_t i = 0; i < points.size(); ++i) (points.normal[i].z() > 0.5f ? roofs : walls)[store.features()[points.feature[i]].id].insert(points.sigma_m[i]);
+    for (std::size_t i = 0; i < points.size(); ++i) (points.normal[i].z() > 0.5f ? roofs : walls)[features[points.feature[i]].id].insert(points.sigma_m[i]);
   }
   for (const auto& [id, sigmas] : walls) EXPECT_EQ(sigmas, std::set<float>{0.7f}) << id;
   EXPECT_EQ(roofs["tag"], std::set<float>{0.5f});
   EXPECT_EQ(roofs["levels"], std::set<float>{1.5f});
   EXPECT_EQ(roofs["default"], std::set<float>{3.0f});
+}
+
+/// Work goes by squares; x = 0 is an edge of one.
+TEST_F(OutlinePrior, NeighboursAcrossTheEdgeOfASquareAreNeighbours) {
+  const auto terrace = [&](double x) {
+    std::vector<Footprint> town{box("low", x - 10, 0, 10, 8), box("high", x, 0, 10, 8), box("hall", x - 20, 20, 40, 10), box("tower", x + 10, 20, 10, 10), box("nave", x - 20, 20, 30, 10)};
+    town[1].attributes.height_m = 12;
+    town[2].attributes.height_m = 20;
+    town[3].kind = town[4].kind = Footprint::Kind::part;
+    return town;
+  };
+  build(terrace(0), "across");
+  build(terrace(100), "within");
+  std::vector<Eigen::Vector3d> across = points("across"), within = points("within");
+  for (Eigen::Vector3d& p : within) p.x() -= 100'000;
+  EXPECT_EQ(across, within);
 }
 
 TEST_F(OutlinePrior, ARoofThatCannotBeBuiltIsFlatAndCounted) {

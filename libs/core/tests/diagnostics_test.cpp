@@ -28,3 +28,18 @@ TEST(DiagnosticsTest, MergingPartsInOrderEqualsOneWhole) {
   ASSERT_EQ(first.entries().size(), whole.entries().size());
   for (std::size_t i = 0; i < whole.entries().size(); ++i) EXPECT_EQ(first.entries()[i].feature, whole.entries()[i].feature);
 }
+
+TEST(DiagnosticsTest, RanksMakeTheOrderInWhichFeaturesComeIndifferent) {
+  Diagnostics ascending, descending;
+  for (std::size_t i = 0; i < 40; ++i) {
+    ascending.set_rank(i);
+    ascending.add(DiagnosticCode::ring_not_closed, std::to_string(i), "");
+    Diagnostics one;
+    one.set_rank(39 - i);
+    one.add(DiagnosticCode::ring_not_closed, std::to_string(39 - i), "");
+    descending.merge(one);
+  }
+  ASSERT_EQ(descending.entries().size(), Diagnostics::max_entries);
+  EXPECT_EQ(descending.total(), 40u);
+  for (std::size_t i = 0; i < Diagnostics::max_entries; ++i) EXPECT_EQ(descending.entries()[i].feature, ascending.entries()[i].feature);
+}

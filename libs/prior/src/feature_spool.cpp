@@ -1,11 +1,11 @@
 #include "feature_spool.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include <priormap/core/error.hpp>
 #include <priormap/core/hash.hpp>
 #include <priormap/core/output_file.hpp>
+#include <priormap/core/packed_bytes.hpp>
 #include <priormap/core/parallel.hpp>
 #include <priormap/pointcloud/point_cloud.hpp>
 
@@ -14,45 +14,6 @@
 
 namespace priormap {
 namespace {
-
-class ByteWriter {
- public:
-  template <class T>
-  void put(T value) {
-    const auto* first = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), first, first + sizeof(T));
-  }
-  void put(const std::string& text) {
-    put(std::uint32_t(text.size()));
-    const auto* first = reinterpret_cast<const std::byte*>(text.data());
-    bytes_.insert(bytes_.end(), first, first + text.size());
-  }
-  std::vector<std::byte> take() { return std::move(bytes_); }
-
- private:
-  std::vector<std::byte> bytes_;
-};
-
-class ByteReader {
- public:
-  explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
-  template <class T>
-  T get() {
-    T value;
-    std::memcpy(&value, bytes_.data(), sizeof(T));
-    bytes_ = bytes_.subspan(sizeof(T));
-    return value;
-  }
-  std::string text() {
-    const auto size = get<std::uint32_t>();
-    std::string value(reinterpret_cast<const char*>(bytes_.data()), size);
-    bytes_ = bytes_.subspan(size);
-    return value;
-  }
-
- private:
-  std::span<const std::byte> bytes_;
-};
 
 std::vector<std::byte> pack(const Feature& feature) {
   ByteWriter out;
@@ -101,25 +62,26 @@ Feature unpack(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-std::vector<std::byte> FeatureSpool::bytes_of(const Item& item) const {
-  std::vector<std::byte> bytes(item.piece.size);
-  spill_.read(item.piece, bytes.data());
-  return bytes;
+std::string_view FeatureSpool::kept(const std::string& name) {
+  auto* text = static_cast<char*>(memory_.allocate(name.size(), 1));
+  std::ranges::copy(name, text);
+  return {text, name.size()};
 }
-
-Feature FeatureSpool::feature(std::uint32_t number) const { return unpack(bytes_of(items_[number])); }
 
 std::uint32_t FeatureSpool::add(const Feature& feature) {
   const std::vector<std::byte> bytes = pack(feature);
   const std::lock_guard lock(mutex_);
   if (items_.size() == PointCloud::no_feature) throw Error("a prior holds at most 4294967295 features; write several priors");
-  const auto [found, is_new] = number_of_name_.try_emplace(feature.source + '\0' + feature.id, std::uint32_t(items_.size()));
-  if (is_new) {
-    items_.push_back({spill_.append(bytes)});
-  } else if (Item& item = items_[found->second]; bytes < bytes_of(item)) {
-    item.piece = spill_.append(bytes);
+  const std::string name = feature.source + '\0' + feature.id;
+  if (const auto found = number_of_name_.find(name); found != number_of_name_.end()) {
+    Item& item = items_[found->second];
+    if (bytes < spill_.read(item.piece)) item.piece = spill_.append(bytes);
+    return found->second;
   }
-  return found->second;
+  const auto number = std::uint32_t(items_.size());
+  number_of_name_.emplace(kept(name), number);
+  items_.push_back({spill_.append(bytes)});
+  return number;
 }
 
 void FeatureSpool::mark_used(std::span<const std::uint32_t> numbers) {
@@ -153,7 +115,7 @@ FeatureSpool::Written FeatureSpool::write(const std::filesystem::path& file, con
       [&](std::size_t chunk) {
         const OutlineFrame own_frame = frame;
         for (std::size_t i = chunk * chunk_size; i < std::min(order.size(), (chunk + 1) * chunk_size); ++i)
-          chunks[chunk] += feature_line(feature(order[i].second), std::uint32_t(i), own_frame);
+          chunks[chunk] += feature_line(unpack(spill_.read(items_[order[i].second].piece)), std::uint32_t(i), own_frame);
       },
       [&](std::size_t chunk) {
         out << chunks[chunk];

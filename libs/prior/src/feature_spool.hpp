@@ -1,22 +1,24 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <memory_resource>
 #include <mutex>
 #include <span>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
 #include <priormap/prior/feature.hpp>
 
-#include "spill_file.hpp"
+#include <priormap/core/spill_file.hpp>
 
 namespace priormap {
 
 /// Features collected in any order: names in memory, everything else in a spill file. Thread-safe.
 class FeatureSpool {
  public:
-  explicit FeatureSpool(std::filesystem::path folder) : spill_(std::move(folder)) {}
+  explicit FeatureSpool(std::filesystem::path folder) : spill_(std::move(folder), buffer_bytes) {}
 
   /// The feature's number here. Of two that share source and id one remains, whatever the order: the smaller in its bytes.
   std::uint32_t add(const Feature& feature);
@@ -37,13 +39,14 @@ class FeatureSpool {
     SpillFile::Piece piece;
     bool used = false;
   };
-  std::vector<std::byte> bytes_of(const Item& item) const;
-  Feature feature(std::uint32_t number) const;
+  std::string_view kept(const std::string& name);
 
+  static constexpr std::size_t buffer_bytes = std::size_t(8) << 20;
   mutable std::mutex mutex_;
   SpillFile spill_;
   std::vector<Item> items_;
-  std::unordered_map<std::string, std::uint32_t> number_of_name_;   ///< source, a zero, id
+  std::pmr::monotonic_buffer_resource memory_;   ///< for millions of names, none of which goes before the end
+  std::pmr::unordered_map<std::string_view, std::uint32_t> number_of_name_{&memory_};   ///< source, a zero, id
 };
 
 }  // namespace priormap

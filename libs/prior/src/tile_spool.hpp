@@ -11,7 +11,7 @@
 #include <priormap/geodesy/tile_grid.hpp>
 
 #include "point_record.hpp"
-#include "spill_file.hpp"
+#include <priormap/core/spill_file.hpp>
 
 namespace priormap {
 

@@ -26,7 +26,7 @@ class OsmTown {
 
  private:
   std::filesystem::path file_;
-  std::vector<Footprint> footprints_;
+  FootprintList footprints_;
   std::vector<OsmStreet> streets_;
 };
 

@@ -1,5 +1,6 @@
 #include <priormap/sources/ogr_footprints.hpp>
 
+#include <functional>
 #include <memory>
 
 #include <priormap/core/error.hpp>
@@ -99,29 +100,45 @@ std::optional<Footprint> read_feature(OGRFeature& feature, OGRLayer& layer, cons
   return footprint;
 }
 
-void read_layer(OGRLayer& layer, const fs::path& file, const FootprintFields& names, FootprintLayers& result, Diagnostics& diagnostics) {
+struct CommonCrs {
+  std::optional<Crs> crs;
+  bool is_settled = false;   ///< a footprint has been read
+
+  void include(const std::optional<Crs>& layer, const fs::path& file) {
+    if (!crs && !is_settled && layer) crs = layer->horizontal();
+    const bool same = layer ? crs && crs->equivalent_to(layer->horizontal()) : !crs;
+    if (!same) throw CrsError(file.string() + ": its layers differ in their CRS; choose one with --layer");
+  }
+};
+
+void read_layer(OGRLayer& layer, const fs::path& file, const FootprintFields& names, CommonCrs& common, Diagnostics& diagnostics,
+                const std::function<void(Footprint&&)>& visit) {
   const LayerFields fields{field_index(layer, names.height, file), field_index(layer, names.levels, file), field_index(layer, names.id, file)};
   const std::optional<Crs> crs = crs_of(layer.GetSpatialRef());
-  if (!result.crs && result.footprints.empty() && crs) result.crs = crs->horizontal();
-  const bool same = crs ? result.crs && result.crs->equivalent_to(crs->horizontal()) : !result.crs;
-  if (!same) throw CrsError(file.string() + ": its layers differ in their CRS; choose one with --layer");
+  common.include(crs, file);
 
   const bool swap_axes = crs && north_comes_first(layer, *crs);
   layer.ResetReading();
   while (const std::unique_ptr<OGRFeature> feature{layer.GetNextFeature()})
-    if (std::optional<Footprint> footprint = read_feature(*feature, layer, fields, swap_axes, diagnostics)) result.footprints.push_back(std::move(*footprint));
+    if (std::optional<Footprint> footprint = read_feature(*feature, layer, fields, swap_axes, diagnostics)) visit(std::move(*footprint));
   if (CPLGetLastErrorType() >= CE_Failure) throw FormatError(file, "cannot be read to its end: " + QuietGdal::message());
 }
 
 }  // namespace
 
-FootprintLayers read_ogr_footprints(const fs::path& file, const FootprintFields& fields, Diagnostics& diagnostics) {
+std::optional<Crs> read_ogr_footprints(const fs::path& file, const FootprintFields& fields, Diagnostics& diagnostics, FootprintList& footprints,
+                                       std::uint16_t file_index) {
   register_gdal();
   const QuietGdal quiet;
   const VectorDataset dataset = open_vector(file);
-  FootprintLayers result;
-  for (OGRLayer* layer : chosen_layers(*dataset, file, fields.layer)) read_layer(*layer, file, fields, result, diagnostics);
-  return result;
+  CommonCrs common;
+  for (OGRLayer* layer : chosen_layers(*dataset, file, fields.layer))
+    read_layer(*layer, file, fields, common, diagnostics, [&](Footprint&& footprint) {
+      footprint.file = file_index;
+      footprints.push_back(footprint);
+      common.is_settled = true;
+    });
+  return common.crs;
 }
 
 }  // namespace priormap

@@ -1,6 +1,7 @@
 #include <priormap/sources/osm_footprints.hpp>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <osmium/io/any_input.hpp>
@@ -22,11 +23,29 @@ namespace fs = std::filesystem;
 using WayId = std::int64_t;
 using RelationId = std::int64_t;
 
-struct Way {
-  std::size_t first_node = 0, num_nodes = 0;  // in OsmObjects::nodes
+/// What takes the room of a way.
+struct WayContent {
+  std::vector<OsmNodeId> nodes;
   BuildingAttributes attributes;
-  bool is_building = false, is_part = false;
-  std::uint16_t file = 0;
+};
+
+void pack(const WayContent& content, ByteWriter& out) {
+  out.put(static_cast<std::uint32_t>(content.nodes.size()));
+  out.put_all(std::span(content.nodes));
+  pack(content.attributes, out);
+}
+
+void unpack(ByteReader& in, WayContent& content) {
+  content.nodes.resize(in.get<std::uint32_t>());
+  in.get_all(std::span(content.nodes));
+  unpack(in, content.attributes);
+}
+
+struct Way {
+  WayId id;
+  std::uint32_t content;   ///< in OsmObjects::way_contents
+  std::uint16_t file;
+  bool is_building, is_part;
 };
 
 struct Member {
@@ -45,14 +64,18 @@ struct Relation {
 /// What buildings need of the files, and no more.
 struct OsmObjects {
   std::map<RelationId, Relation> relations;
-  std::unordered_map<WayId, Way> ways;
-  std::vector<OsmNodeId> nodes;                                  ///< of all ways, one after the other
-  std::vector<std::pair<OsmNodeId, osmium::Location>> locations;  ///< by id; invalid where no file holds the node
+  std::vector<Way> ways;                       ///< by id
+  PackedList<WayContent> way_contents;
+  std::vector<OsmNodeId> nodes;                ///< of all ways: first one after the other, then by id
+  std::vector<osmium::Location> locations;     ///< of `nodes` by id; invalid where no file holds the node
 
-  std::span<const OsmNodeId> nodes_of(const Way& way) const { return {nodes.data() + way.first_node, way.num_nodes}; }
+  Way* find_way(WayId id) {
+    const auto at = std::ranges::lower_bound(ways, id, {}, &Way::id);
+    return at != ways.end() && at->id == id ? &*at : nullptr;
+  }
   osmium::Location location(OsmNodeId id) const {
-    const auto at = std::ranges::lower_bound(locations, id, {}, &std::pair<OsmNodeId, osmium::Location>::first);
-    return at != locations.end() && at->first == id ? at->second : osmium::Location();
+    const auto at = std::ranges::lower_bound(nodes, id);
+    return at != nodes.end() && *at == id ? locations[static_cast<std::size_t>(at - nodes.begin())] : osmium::Location();
   }
 };
 
@@ -104,6 +127,15 @@ void read_relations(const fs::path& file, std::uint16_t file_index, int threads,
   });
 }
 
+/// Puts the ways of one more file, from `first` on, among the others. Of a way given twice the first remains.
+void put_in_order(std::vector<Way>& ways, std::size_t first) {
+  const auto begin_of_new = ways.begin() + static_cast<std::ptrdiff_t>(first);
+  std::ranges::stable_sort(begin_of_new, ways.end(), {}, &Way::id);
+  std::ranges::inplace_merge(ways.begin(), begin_of_new, ways.end(), {}, &Way::id);
+  const auto repeated = std::ranges::unique(ways, {}, &Way::id);
+  ways.erase(repeated.begin(), repeated.end());
+}
+
 void read_ways(const fs::path& file, std::uint16_t file_index, int threads, OsmObjects& objects, Diagnostics& diagnostics) {
   std::vector<WayId> wanted;
   for (const auto& [id, relation] : objects.relations)
@@ -111,37 +143,46 @@ void read_ways(const fs::path& file, std::uint16_t file_index, int threads, OsmO
       if (member.type == osmium::item_type::way) wanted.push_back(member.ref);
   std::ranges::sort(wanted);
 
+  const std::vector<WayId> known = [&] {
+    std::vector<WayId> ids;
+    std::ranges::transform(objects.ways, std::back_inserter(ids), &Way::id);
+    return ids;
+  }();
+  const std::size_t first = objects.ways.size();
+  WayContent content;
   for_each_object<osmium::Way>(file, osmium::osm_entity_bits::way, threads, [&](const osmium::Way& object) {
     const OsmBuildingTags tags = building_tags(object);
     const bool building = tags.is_building() || tags.is_part();
-    if (!(building || std::ranges::binary_search(wanted, object.id())) || objects.ways.contains(object.id())) return;
-    Way way{objects.nodes.size(), object.nodes().size(), {}, tags.is_building(), tags.is_part(), file_index};
-    if (building) way.attributes = tags.attributes(feature_id("way", object.id()), diagnostics);
-    for (const osmium::NodeRef& node : object.nodes()) objects.nodes.push_back(node.ref());
-    objects.ways.emplace(object.id(), way);
+    if (!(building || std::ranges::binary_search(wanted, object.id())) || std::ranges::binary_search(known, object.id())) return;
+    content.attributes = building ? tags.attributes(feature_id("way", object.id()), diagnostics) : BuildingAttributes();
+    content.nodes.clear();
+    for (const osmium::NodeRef& node : object.nodes()) content.nodes.push_back(node.ref());
+    objects.nodes.insert(objects.nodes.end(), content.nodes.begin(), content.nodes.end());
+    objects.ways.push_back({object.id(), static_cast<std::uint32_t>(objects.way_contents.size()), file_index, tags.is_building(), tags.is_part()});
+    objects.way_contents.push_back(content);
   });
+  put_in_order(objects.ways, first);
 }
 
 void list_wanted_nodes(OsmObjects& objects) {
-  std::vector<OsmNodeId> ids = objects.nodes;
-  std::ranges::sort(ids);
-  const auto repeated = std::ranges::unique(ids);
-  ids.erase(repeated.begin(), repeated.end());
-  objects.locations.reserve(ids.size());
-  for (const OsmNodeId id : ids) objects.locations.emplace_back(id, osmium::Location());
+  std::ranges::sort(objects.nodes);
+  const auto repeated = std::ranges::unique(objects.nodes);
+  objects.nodes.erase(repeated.begin(), repeated.end());
+  objects.locations.resize(objects.nodes.size());
 }
 
 void read_nodes(const fs::path& file, int threads, OsmObjects& objects) {
-  auto& locations = objects.locations;
-  const auto by_id = &std::pair<OsmNodeId, osmium::Location>::first;
-  auto cursor = locations.begin();
+  const std::vector<OsmNodeId>& nodes = objects.nodes;
+  auto cursor = nodes.begin();
   OsmNodeId last = std::numeric_limits<OsmNodeId>::min();
   for_each_object<osmium::Node>(file, osmium::osm_entity_bits::node, threads, [&](const osmium::Node& node) {
     // Files are nearly always sorted: then the cursor only walks on.
-    if (node.id() < last) cursor = std::ranges::lower_bound(locations, node.id(), {}, by_id);
+    if (node.id() < last) cursor = std::ranges::lower_bound(nodes, node.id());
     last = node.id();
-    while (cursor != locations.end() && cursor->first < node.id()) ++cursor;
-    if (cursor != locations.end() && cursor->first == node.id() && !cursor->second.valid()) cursor->second = node.location();
+    while (cursor != nodes.end() && *cursor < node.id()) ++cursor;
+    if (cursor == nodes.end() || *cursor != node.id()) return;
+    osmium::Location& location = objects.locations[static_cast<std::size_t>(cursor - nodes.begin())];
+    if (!location.valid()) location = node.location();
   });
 }
 
@@ -150,15 +191,12 @@ class FootprintAssembly {
  public:
   FootprintAssembly(OsmObjects& objects, Diagnostics& diagnostics) : objects_(objects), diagnostics_(diagnostics) {}
 
-  std::vector<Footprint> run() {
+  FootprintList run() {
     inherit_tags_along_relations();
     for (const auto& [id, relation] : objects_.relations)
       if (relation.is_multipolygon && (relation.is_building || relation.is_part)) add_multipolygon(id, relation);
-    std::vector<WayId> ids;
-    for (const auto& [id, way] : objects_.ways)
-      if (way.is_building || way.is_part) ids.push_back(id);
-    std::ranges::sort(ids);
-    for (const WayId id : ids) add_way(id, objects_.ways.at(id));
+    for (const Way& way : objects_.ways)
+      if (way.is_building || way.is_part) add_way(way);
     return std::move(footprints_);
   }
 
@@ -173,18 +211,19 @@ class FootprintAssembly {
     for (auto& [id, relation] : objects_.relations) {
       if (!relation.is_multipolygon) continue;
       for (const Member& member : relation.members) {
-        const auto way = objects_.ways.find(member.ref);
-        if (!is_outer(member) || way == objects_.ways.end() || !(way->second.is_building || way->second.is_part)) continue;
+        Way* way = is_outer(member) ? objects_.find_way(member.ref) : nullptr;
+        if (!way || !(way->is_building || way->is_part)) continue;
+        const BuildingAttributes attributes = objects_.way_contents[way->content].attributes;
         if (!relation.is_building && !relation.is_part) {
-          relation.is_building = way->second.is_building;
-          relation.is_part = way->second.is_part;
-          relation.attributes = way->second.attributes;
-        } else if (relation.is_building != way->second.is_building) {
+          relation.is_building = way->is_building;
+          relation.is_part = way->is_part;
+          relation.attributes = attributes;
+        } else if (relation.is_building != way->is_building) {
           continue;  // a part that happens to bound the building, or the other way round
         } else {
-          fill_missing(relation.attributes, way->second.attributes);
+          fill_missing(relation.attributes, attributes);
         }
-        way->second.is_building = way->second.is_part = false;
+        way->is_building = way->is_part = false;
       }
     }
   }
@@ -209,36 +248,46 @@ class FootprintAssembly {
     for (const Member& member : relation.members) {
       const bool outline = member.role == "outline", part = member.role == "part";
       if (!outline && !part) continue;
-      const auto apply = [&](auto& object) {
-        if (part) object.is_part = true;
-        if (outline) {
-          object.is_building = true;
-          fill_missing(object.attributes, relation.attributes);
-        }
+      const auto mark = [&](auto& object) {
+        object.is_part |= part;
+        object.is_building |= outline;
       };
       if (member.type == osmium::item_type::way) {
-        if (const auto way = objects_.ways.find(member.ref); way != objects_.ways.end()) apply(way->second);
+        if (Way* way = objects_.find_way(member.ref)) {
+          mark(*way);
+          if (outline) describe(*way, relation.attributes);
+        }
         building_of_way_[member.ref] = number;
       } else if (member.type == osmium::item_type::relation) {
-        if (const auto other = objects_.relations.find(member.ref); other != objects_.relations.end()) apply(other->second);
+        if (const auto other = objects_.relations.find(member.ref); other != objects_.relations.end()) {
+          mark(other->second);
+          if (outline) fill_missing(other->second.attributes, relation.attributes);
+        }
         building_of_relation_[member.ref] = number;
       }
     }
   }
 
-  void add_way(WayId id, const Way& way) {
-    const std::string feature = feature_id("way", id);
-    const auto nodes = objects_.nodes_of(way);
+  void describe(const Way& way, const BuildingAttributes& from) {
+    WayContent content = objects_.way_contents[way.content];
+    fill_missing(content.attributes, from);
+    objects_.way_contents.put(way.content, content);
+  }
+
+  void add_way(const Way& way) {
+    const std::string feature = feature_id("way", way.id);
+    const WayContent content = objects_.way_contents[way.content];
+    const std::span nodes(content.nodes);
     if (nodes.size() < 2 || nodes.front() != nodes.back()) {
       diagnostics_.add(DiagnosticCode::ring_not_closed, feature, "the way is not closed; left out");
       return;
     }
     std::optional<Ring2> ring = located(nodes.first(nodes.size() - 1), feature);
     if (!ring) return;
-    Footprint footprint{feature, {}, way.attributes, kind(way.is_building), Footprint::no_building, way.file};
+    Footprint footprint{feature, {}, content.attributes, kind(way.is_building), Footprint::no_building, way.file};
     footprint.rings.push_back(std::move(*ring));
-    if (const auto building = building_of_way_.find(id); building != building_of_way_.end()) footprint.building = building->second;
-    footprints_.push_back(std::move(footprint));
+    if (const auto building = building_of_way_.find(way.id); building != building_of_way_.end()) footprint.building = building->second;
+    footprints_.push_back(footprint);
   }
 
   void add_multipolygon(RelationId id, const Relation& relation) {
@@ -246,11 +295,10 @@ class FootprintAssembly {
     std::vector<OsmMemberWay> ways;
     for (const Member& member : relation.members) {
       if (member.type != osmium::item_type::way) continue;
-      const auto way = objects_.ways.find(member.ref);
-      if (way == objects_.ways.end())
-        diagnostics_.add(DiagnosticCode::unresolved_reference, feature, "no file holds its member " + feature_id("way", member.ref));
+      if (const Way* way = objects_.find_way(member.ref))
+        ways.push_back({objects_.way_contents[way->content].nodes, member.role == "inner"});
       else
-        ways.push_back({objects_.nodes_of(way->second), member.role == "inner"});
+        diagnostics_.add(DiagnosticCode::unresolved_reference, feature, "no file holds its member " + feature_id("way", member.ref));
     }
     const OsmRings assembled = assemble_rings(ways);
     if (!assembled.complete) diagnostics_.add(DiagnosticCode::ring_not_closed, feature, "some of its ways close no ring; left out");
@@ -269,7 +317,7 @@ class FootprintAssembly {
         diagnostics_.add(DiagnosticCode::inner_ring_outside, feature, "an inner ring lies outside its outer rings; left out");
     }
     if (const auto building = building_of_relation_.find(id); building != building_of_relation_.end()) footprint.building = building->second;
-    footprints_.push_back(std::move(footprint));
+    footprints_.push_back(footprint);
   }
 
   static Footprint::Kind kind(bool is_building) { return is_building ? Footprint::Kind::outline : Footprint::Kind::part; }
@@ -299,7 +347,7 @@ class FootprintAssembly {
 
   OsmObjects& objects_;
   Diagnostics& diagnostics_;
-  std::vector<Footprint> footprints_;
+  FootprintList footprints_;
   std::uint32_t num_building_relations_ = 0;
   std::unordered_map<WayId, std::uint32_t> building_of_way_;
   std::unordered_map<RelationId, std::uint32_t> building_of_relation_;
@@ -307,7 +355,7 @@ class FootprintAssembly {
 
 }  // namespace
 
-std::vector<Footprint> read_osm_footprints(const std::vector<fs::path>& files, int threads, Diagnostics& diagnostics, const Events& events) {
+FootprintList read_osm_footprints(const std::vector<fs::path>& files, int threads, Diagnostics& diagnostics, const Events& events) {
   OsmObjects objects;
   const double num_steps = 3.0 * static_cast<double>(files.size());
   double step = 0;

@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace priormap {
@@ -14,7 +13,7 @@ struct OsmRings {
 };
 
 struct OsmMemberWay {
-  std::span<const OsmNodeId> nodes;
+  std::vector<OsmNodeId> nodes;
   bool inner = false;
 };
 

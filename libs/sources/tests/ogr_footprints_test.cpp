@@ -27,6 +27,16 @@ class OgrFootprints : public testing::Test {
   static std::string feature(const std::string& properties, const std::string& geometry) {
     return R"({"type":"Feature","properties":{)" + properties + R"(},"geometry":)" + geometry + "}";
   }
+  struct Layers {
+    std::vector<Footprint> footprints;
+    std::optional<Crs> crs;
+  };
+  Layers read(const fs::path& file, const FootprintFields& fields) {
+    FootprintList list;
+    const std::optional<Crs> crs = read_ogr_footprints(file, fields, diagnostics_, list);
+    return {{list.begin(), list.end()}, crs};
+  }
+
   fs::path folder_;
   Diagnostics diagnostics_;
 };
@@ -37,7 +47,7 @@ const std::string two_squares = R"({"type":"MultiPolygon","coordinates":[[[[11,4
 
 TEST_F(OgrFootprints, PolygonsWithHeightsAndLevels) {
   const fs::path file = write_features(feature(R"("h":12.5,"storeys":3,"key":"A7")", square) + "," + feature(R"("h":null,"storeys":0,"key":null)", two_squares));
-  const FootprintLayers layers = read_ogr_footprints(file, {"", "h", "storeys", ""}, diagnostics_);
+  const Layers layers = read(file, {"", "h", "storeys", ""});
   ASSERT_EQ(layers.footprints.size(), 2u);
   ASSERT_TRUE(layers.crs);
   EXPECT_TRUE(layers.crs->is_geographic());
@@ -49,12 +59,12 @@ TEST_F(OgrFootprints, PolygonsWithHeightsAndLevels) {
   EXPECT_FALSE(layers.footprints[1].attributes.height_m);
   EXPECT_FALSE(layers.footprints[1].attributes.levels);
   EXPECT_EQ(diagnostics_.counts().at(DiagnosticCode::unusable_height), 1u) << "no storeys at all is no count of them";
-  EXPECT_EQ(read_ogr_footprints(file, {"", "", "", "key"}, diagnostics_).footprints[0].id, "town/A7");
+  EXPECT_EQ(read(file, {"", "", "", "key"}).footprints[0].id, "town/A7");
 }
 
 TEST_F(OgrFootprints, HeightsAsTextCarryTheirUnits) {
   const fs::path file = write_features(feature(R"("h":"30 ft")", square) + "," + feature(R"("h":"unknown")", square));
-  const FootprintLayers layers = read_ogr_footprints(file, {"", "h", "", ""}, diagnostics_);
+  const Layers layers = read(file, {"", "h", "", ""});
   EXPECT_NEAR(*layers.footprints[0].attributes.height_m, 9.144, 1e-9);
   EXPECT_FALSE(layers.footprints[1].attributes.height_m);
   EXPECT_EQ(diagnostics_.total(), 1u);
@@ -62,20 +72,20 @@ TEST_F(OgrFootprints, HeightsAsTextCarryTheirUnits) {
 
 TEST_F(OgrFootprints, WhatIsNoPolygonIsCounted) {
   const fs::path file = write_features(feature("", square) + "," + feature("", R"({"type":"Point","coordinates":[11,48]})") + "," + feature("", "null"));
-  EXPECT_EQ(read_ogr_footprints(file, {}, diagnostics_).footprints.size(), 1u);
+  EXPECT_EQ(read(file, {}).footprints.size(), 1u);
   EXPECT_EQ(diagnostics_.counts().at(DiagnosticCode::too_few_points), 2u);
 }
 
 TEST_F(OgrFootprints, UnusableFilesAreNamed) {
-  EXPECT_THROW(read_ogr_footprints(folder_ / "absent.gpkg", {}, diagnostics_), IoError);
-  EXPECT_THROW(read_ogr_footprints(write("text.shp", "no shapes"), {}, diagnostics_), FormatError);
-  EXPECT_THROW(read_ogr_footprints(write("cut.geojson", R"({"type":"FeatureCollection","features":[{"type":"Fea)"), {}, diagnostics_), FormatError);
+  EXPECT_THROW(read(folder_ / "absent.gpkg", {}), IoError);
+  EXPECT_THROW(read(write("text.shp", "no shapes"), {}), FormatError);
+  EXPECT_THROW(read(write("cut.geojson", R"({"type":"FeatureCollection","features":[{"type":"Fea)"), {}), FormatError);
   const fs::path points = write_features(feature("", R"({"type":"Point","coordinates":[11,48]})"));
-  EXPECT_THROW(read_ogr_footprints(points, {}, diagnostics_), FormatError);
+  EXPECT_THROW(read(points, {}), FormatError);
   const fs::path file = write_features(feature(R"("h":3)", square));
-  EXPECT_THROW(read_ogr_footprints(file, {"other", "", "", ""}, diagnostics_), FormatError);
+  EXPECT_THROW(read(file, {"other", "", "", ""}), FormatError);
   try {
-    read_ogr_footprints(file, {"", "height", "", ""}, diagnostics_);
+    read(file, {"", "height", "", ""});
     ADD_FAILURE();
   } catch (const FormatError& error) {
     EXPECT_NE(std::string(error.what()).find("it has: h"), std::string::npos) << error.what();
@@ -85,13 +95,13 @@ TEST_F(OgrFootprints, UnusableFilesAreNamed) {
 /// GDAL itself writes what is read back.
 TEST_F(OgrFootprints, EveryFormatGivesTheSameOutlines) {
   const fs::path file = write_features(feature(R"("h":12.5)", square) + "," + feature(R"("h":7)", two_squares));
-  const std::vector<Footprint> expected = read_ogr_footprints(file, {"", "h", "", ""}, diagnostics_).footprints;
+  const std::vector<Footprint> expected = read(file, {"", "h", "", ""}).footprints;
   for (const char* name : {"town.gpkg", "town.shp", "town.fgb"}) {
     auto* source = GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR);
     GDALDatasetH handle = source;
     GDALClose(GDALVectorTranslate((folder_ / name).c_str(), nullptr, 1, &handle, nullptr, nullptr));
     GDALClose(source);
-    const FootprintLayers layers = read_ogr_footprints(folder_ / name, {"", "h", "", ""}, diagnostics_);
+    const Layers layers = read(folder_ / name, {"", "h", "", ""});
     ASSERT_TRUE(layers.crs) << name;
     std::vector<Footprint> found = layers.footprints;
     ASSERT_EQ(found.size(), 2u) << name;
@@ -153,7 +163,7 @@ TEST_F(OgrFootprints, TheFootprintsOfGothenburg) {
   const fs::path shared = given ? fs::path(given) : fs::path(PRIORMAP_SOURCE_DIR) / "../shared/data";
   const fs::path file = shared / "overlap_gothenburg/gvc_footprints.shp";
   if (!fs::exists(file)) GTEST_SKIP() << "the real inputs are absent";
-  const FootprintLayers layers = read_ogr_footprints(file, {}, diagnostics_);
+  const Layers layers = read(file, {});
   EXPECT_EQ(layers.footprints.size(), 119u);
   ASSERT_TRUE(layers.crs);
   EXPECT_TRUE(layers.crs->equivalent_to(Crs::parse("EPSG:3006")));

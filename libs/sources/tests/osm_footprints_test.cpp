@@ -53,7 +53,7 @@ class OsmFootprints : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << text;
     return folder_ / name;
   }
-  std::vector<Footprint> read(const OsmText& text) { return read_osm_footprints({write("town.osm", text.text())}, 2, diagnostics_); }
+  FootprintList read(const OsmText& text) { return read_osm_footprints({write("town.osm", text.text())}, 2, diagnostics_); }
   std::size_t count(DiagnosticCode code) const { return diagnostics_.counts().contains(code) ? diagnostics_.counts().at(code) : 0; }
   /// In lattice cells.
   double cells(const Footprint& footprint) {

@@ -1,19 +1,10 @@
 #pragma once
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include <priormap/geodesy/tile_grid.hpp>
-#include <priormap/sources/footprint.hpp>
+#include <priormap/builder/projected_footprints.hpp>
 
 namespace priormap {
-
-/// A footprint in the prior's CRS, its rings put in order.
-struct ProjectedFootprint {
-  Footprint footprint;                ///< without its rings
-  std::vector<Polygon2> polygons;     ///< empty: nothing usable was left
-  Bounds2 bounds;
-};
 
 struct PartAssignment {
   static constexpr std::uint32_t no_outline = 0xffffffffu;
@@ -23,7 +14,7 @@ struct PartAssignment {
 
 /// Parts replace the outline they fill: by area, at least `filled_share` of it. A part belongs to the outline of its relation, else to the one
 /// that holds most of it. Areas are measured on a lattice of about 400 places an outline.
-PartAssignment assign_parts(std::span<const ProjectedFootprint> footprints);
+PartAssignment assign_parts(const ProjectedFootprints& footprints);
 inline constexpr double filled_share = 0.9;
 
 }  // namespace priormap

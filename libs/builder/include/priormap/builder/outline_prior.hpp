@@ -25,7 +25,7 @@ std::vector<HashedFile> distinct_files(const std::vector<std::filesystem::path>&
 
 /// Outlines as their reader gives them, and what the prior says of where they come from.
 struct OutlineInput {
-  std::vector<Footprint> footprints;            ///< `file` indexes `files`
+  FootprintList footprints;                     ///< `file` indexes `files`
   std::vector<HashedFile> files;                ///< each once
   std::vector<std::optional<Crs>> crs;          ///< of the footprints, file by file, by the files' word; none: they declare none
   std::string kind;                             ///< "osm", "footprints"
@@ -37,6 +37,8 @@ struct OutlineCounts {
   std::size_t parts = 0;
   std::size_t replaced = 0;    ///< outlines that their parts fill
   std::array<std::size_t, num_height_rules> by_rule{};
+
+  OutlineCounts& operator+=(const OutlineCounts& other);
 };
 
 struct OutlineReport {
@@ -46,7 +48,8 @@ struct OutlineReport {
   Diagnostics diagnostics;     ///< those given, and those met while building
 };
 
-/// From outlines to a prior: projects, puts rings in order, lets parts replace outlines, finds ground and heights, raises walls and roofs, samples them and writes tiles.
+/// From outlines to a prior: projects, puts rings in order, lets parts replace outlines, then, neighbourhood by neighbourhood, finds ground and heights, raises walls
+/// and roofs, samples them and writes tiles. Some 250 bytes a building stay in memory, beside a bounded amount; the rest waits in temporary files.
 /// The same bytes for any number of threads. Points are made from whole features and only then cut by --bbox.
 /// @throws UsageError, CrsError, IoError, FormatError (no building in the input, none inside --bbox)
 OutlineReport build_outline_prior(OutlineInput input, const PriorOptions& prior_options, const OutlineOptions& outline_options,

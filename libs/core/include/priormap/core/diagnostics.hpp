@@ -38,18 +38,28 @@ class Diagnostics {
 
   /// Counts the defect; keeps the first `max_entries` of each code for the report.
   void add(DiagnosticCode code, std::string feature, std::string message);
+  /// Of what is added from now on; 0 until then. Entries are kept in order of rank, those of one rank in the order in which they were added: threads that take the
+  /// features in any order keep the same ones.
+  void set_rank(std::size_t rank) { rank_ = rank; }
   void merge(const Diagnostics& other);
 
   const std::map<DiagnosticCode, std::size_t>& counts() const { return counts_; }
-  /// Kept entries, ordered by code, then by the order in which they were added.
+  /// Kept entries, ordered by code, then by rank, then by the order in which they were added.
   std::vector<Entry> entries() const;
   std::size_t total() const;
 
   static constexpr std::size_t max_entries = 20;
 
  private:
+  struct Ranked {
+    std::size_t rank;
+    Entry entry;
+  };
+  void keep(Ranked entry);
+
+  std::size_t rank_ = 0;
   std::map<DiagnosticCode, std::size_t> counts_;
-  std::map<DiagnosticCode, std::vector<Entry>> entries_;
+  std::map<DiagnosticCode, std::vector<Ranked>> entries_;
 };
 
 }  // namespace priormap

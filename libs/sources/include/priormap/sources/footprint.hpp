@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <priormap/core/packed_list.hpp>
 #include <priormap/tessellation/polygon.hpp>
 #include <priormap/tessellation/roof.hpp>
 
@@ -36,5 +37,15 @@ struct Footprint {
   std::uint32_t building = no_building;  ///< outline and parts that the source ties together carry the same number
   std::uint16_t file = 0;                ///< index of the input file
 };
+
+void pack(const BuildingAttributes& attributes, ByteWriter& out);
+void unpack(ByteReader& in, BuildingAttributes& attributes);
+void pack(const Ring2& ring, ByteWriter& out);
+void unpack(ByteReader& in, Ring2& ring);
+void pack(const Footprint& footprint, ByteWriter& out);
+void unpack(ByteReader& in, Footprint& footprint);
+
+/// As many as a country has.
+using FootprintList = PackedList<Footprint>;
 
 }  // namespace priormap

@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <priormap/core/diagnostics.hpp>
 #include <priormap/core/option_field.hpp>
@@ -27,14 +26,14 @@ struct FootprintFields {
   }
 };
 
-struct FootprintLayers {
-  std::vector<Footprint> footprints;   ///< east before north, in `crs`; heights of the geometry are not used
-  std::optional<Crs> crs;              ///< horizontal, of all layers; none: they declare none
-};
 
 /// Polygons of any vector file that OGR reads: GeoPackage, Shapefile, GeoJSON, FlatGeobuf ... Curves are replaced by chords. Ids are "LAYER/NUMBER" or "LAYER/ID".
 /// Field values that are no height or count are reported (702) and treated as absent; features without a polygon are left out (101).
+/// @param footprints  to append to: east before north, in the CRS that is returned; heights of the geometry are not used
+/// @param file_index  `Footprint::file` of what is appended
+/// @return the CRS of all layers, horizontal; none: they declare none
 /// @throws IoError, FormatError (no vector file, no polygons, no such layer or field), CrsError when layers of the file differ in their CRS
-FootprintLayers read_ogr_footprints(const std::filesystem::path& file, const FootprintFields& fields, Diagnostics& diagnostics);
+std::optional<Crs> read_ogr_footprints(const std::filesystem::path& file, const FootprintFields& fields, Diagnostics& diagnostics, FootprintList& footprints,
+                                       std::uint16_t file_index = 0);
 
 }  // namespace priormap

@@ -12,10 +12,10 @@ namespace priormap {
 /// type building that tie outlines and parts together. Longitude, latitude [degrees, WGS 84]. All files together are one data set: an object that
 /// several of them hold counts once (its first file is named), and ways may find their nodes in another file. Ordered by id: the order of the files does not matter.
 ///
-/// Reads each file three times (relations, ways, nodes), so that only what buildings need is held.
+/// Reads each file three times (relations, ways, nodes), so that only what buildings need is held: some 200 bytes a building, the rest in a temporary file.
 /// Broken rings and members that no file holds are counted (103, 206, 701) and left out.
 /// @throws IoError, FormatError naming the file
-std::vector<Footprint> read_osm_footprints(const std::vector<std::filesystem::path>& files, int threads, Diagnostics& diagnostics,
+FootprintList read_osm_footprints(const std::vector<std::filesystem::path>& files, int threads, Diagnostics& diagnostics,
                                            const Events& events = {});
 
 }  // namespace priormap

@@ -1,0 +1,117 @@
+#include "building_raiser.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace priormap {
+namespace {
+
+constexpr double lowest_roof_m = 2;   // a surface model that shows less shows no building: not yet built, or gone
+
+bool contains(const std::vector<Polygon2>& polygons, double x, double y) {
+  return std::ranges::any_of(polygons, [&](const Polygon2& polygon) { return priormap::contains(polygon, {x, y}); });
+}
+
+/// 70th percentile: above it lie trees that overhang, masts and the spread of a pitched roof; below it the cells that mix roof and street.
+std::optional<double> surface_z(const ProjectedFootprint& footprint, const HeightRaster& surface) {
+  std::vector<double> heights;
+  surface.for_each_inside(footprint.bounds, [&](double x, double y, double z) {
+    if (contains(footprint.polygons, x, y)) heights.push_back(z);
+  });
+  if (heights.empty()) {  // smaller than a cell
+    const Ring2& ring = footprint.polygons.front().exterior;
+    Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& p : ring) middle += (p - ring.front()) / static_cast<double>(ring.size());
+    middle += ring.front();
+    return surface.at(middle.x(), middle.y());
+  }
+  const auto rank = heights.begin() + static_cast<std::ptrdiff_t>(0.7 * static_cast<double>(heights.size() - 1));
+  std::ranges::nth_element(heights, rank);
+  return *rank;
+}
+
+double to_millimetres(double metres) { return std::round(metres * 1000) / 1000; }
+
+/// A part says nothing of its height: its building's holds.
+BuildingAttributes inherited(BuildingAttributes part, const BuildingAttributes& outline) {
+  if (part.height_m || part.levels) return part;
+  part.height_m = outline.height_m;
+  part.levels = outline.levels;
+  if (part.height_m && part.min_height_m && *part.min_height_m >= *part.height_m) part.height_m.reset();
+  return part;
+}
+
+void report_flat(const ProjectedFootprint& own, const char* why, Diagnostics& diagnostics) {
+  diagnostics.add(DiagnosticCode::unsupported_roof, own.footprint.id, std::string("its roof shape ") + why + "; taken as flat");
+}
+
+RoofSpec roof_spec(const BuildingAttributes& attributes, double rise_m) {
+  return {attributes.roof_shape, rise_m, attributes.roof_direction_deg, attributes.ridge_across};
+}
+
+double run_m(const ProjectedFootprint& own, const BuildingAttributes& attributes) {
+  return attributes.roof_shape == RoofShape::flat ? 0 : roof_run_m(own.polygons.front(), roof_spec(attributes, 1));
+}
+
+}  // namespace
+
+Building BuildingRaiser::raise(std::uint32_t footprint, Diagnostics& diagnostics) const {
+  const ProjectedFootprint own = footprints_[footprint];
+  Building building;
+  building.file = own.footprint.file;
+  building.is_part = own.footprint.kind == Footprint::Kind::part;
+  if (own.polygons.empty() || parts_.replaced[footprint]) return building;
+  const std::uint32_t outline = parts_.outline_of[footprint];
+  const std::optional<ProjectedFootprint> whole = outline != PartAssignment::no_outline ? std::optional(footprints_[outline]) : std::nullopt;
+  const std::optional<GroundModel::Under> ground = ground_.under(whole ? whole->polygons : own.polygons);
+  if (!ground) {
+    diagnostics.add(DiagnosticCode::outside_terrain, own.footprint.id, "the terrain does not reach it; left out (--ground-height serves outside)");
+    return building;
+  }
+  const BuildingAttributes attributes = whole ? inherited(own.footprint.attributes, whole->footprint.attributes) : own.footprint.attributes;
+  if (attributes.roof_shape == RoofShape::other) report_flat(own, "is not built", diagnostics);
+  const BuildingHeight height = building_height(attributes, roof_above(own, *ground), run_m(own, attributes), options_);
+  building.rule = height.rule;
+  building.feature = feature(own, *ground, height);
+  for (const Polygon2& polygon : own.polygons) building.solids.push_back(solid(polygon, attributes, *ground, height, own, diagnostics));
+  return building;
+}
+
+std::optional<double> BuildingRaiser::roof_above(const ProjectedFootprint& own, const GroundModel::Under& ground) const {
+  if (!surface_ || own.footprint.attributes.height_m) return std::nullopt;
+  const std::optional<double> z = surface_z(own, *surface_);
+  return z && *z - ground.median_z >= lowest_roof_m ? std::optional(*z - ground.median_z) : std::nullopt;
+}
+
+BuildingSolid BuildingRaiser::solid(const Polygon2& outline, const BuildingAttributes& attributes, const GroundModel::Under& ground, const BuildingHeight& height,
+                                    const ProjectedFootprint& own, Diagnostics& diagnostics) const {
+  BuildingSolid solid;
+  solid.outline = outline;
+  solid.on_ground = !(height.bottom_m > 0);
+  solid.base_z = solid.on_ground ? std::min(ground.lowest_z, ground.median_z + height.eaves_m) : ground.median_z + height.bottom_m;
+  solid.top_z = ground.median_z + height.top_m;
+  solid.has_walls = attributes.has_walls;
+  solid.bounds = bounds_of(outline.exterior);
+  if (attributes.roof_shape != RoofShape::flat && attributes.roof_shape != RoofShape::other) {
+    if (height.eaves_m < height.top_m) solid.roof = make_roof(outline, ground.median_z + height.eaves_m, roof_spec(attributes, height.top_m - height.eaves_m));
+    if (!solid.roof) report_flat(own, "cannot be built over its outline", diagnostics);
+  }
+  solid.eaves_z = solid.roof ? ground.median_z + height.eaves_m : solid.top_z;
+  return solid;
+}
+
+Feature BuildingRaiser::feature(const ProjectedFootprint& own, const GroundModel::Under& ground, const BuildingHeight& height) const {
+  Feature feature;
+  feature.id = own.footprint.id;
+  feature.height_m = to_millimetres(height.top_m);
+  feature.height_rule = to_string(height.rule);
+  feature.ground_z = to_millimetres(ground.median_z);
+  feature.sigma_m = options_.sigma_m;
+  for (const Polygon2& polygon : own.polygons) {
+    feature.outline.emplace_back();
+    for_each_ring(polygon, [&](const Ring2& ring) { feature.outline.back().push_back(ring); });
+  }
+  return feature;
+}
+
+}  // namespace priormap
