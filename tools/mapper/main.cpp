@@ -33,6 +33,8 @@ int main(int argc, char** argv) {
   app.options(options.prior_options);
   app.options(options.initial);
   app.choice("--preset", options.preset, priormap::preset_names(), "Parameters of the method");
+  app.option("--jobs", options.jobs, {"stretches of the drive mapped at once, only with --preset default; 1: the drive in one piece", "", 1, 1024});
+  app.options(options.stretches);
   app.options(options.map);
   app.flag("--resume", options.resume, "Go on where a run with the same output was interrupted");
   app.option("--checkpoint", options.checkpoint_s, {"time between states kept beside OUT from which --resume goes on; 0: none are kept", "s", 0, 1e6});

@@ -1,9 +1,14 @@
+#include <chrono>
+#include <utility>
+
+#include <priormap/core/parallel.hpp>
 #include <priormap/registration/scan_reducer.hpp>
 
 #include "drive_estimate.hpp"
 #include "mapping_method.hpp"
 #include "odometry.hpp"
 #include "prior_tracker.hpp"
+#include "stretch.hpp"
 
 namespace priormap {
 namespace {
@@ -12,28 +17,73 @@ namespace {
 class JointMethod : public MappingMethod {
  public:
   JointMethod(const JointMethodOptions& options, const std::optional<NearTiles>& prior, const FirstPose& first)
-      : options_(options), prior_(prior), reducer_(options.reduce_m), odometry_(options.odometry, first.motion), tracker_(options.tracking, options.reduce_m, prior, first.T_map_sensor) {}
+      : options_(options), prior_(prior), first_motion_(first.motion), reducer_(options.reduce_m), odometry_(options.odometry, first.motion), tracker_(options.tracking, options.reduce_m, prior, first.T_map_sensor) {}
 
   void place(const Scan& scan, MappedScan& mapped) override {
     const SurfelCloud surfels = reducer_.reduce(scan.points);
-    const OdometryStep step = odometry_.step(surfels);
-    if (!records_.empty()) mapped.local = step.figures;
-    if (step.began_anew) tracker_.begin_anew();
-    const bool lost = !records_.empty() && !step.joined;
-    if (const auto match = lost ? std::nullopt : tracker_.follow(surfels, step.T_odom_sensor)) {
-      mapped.prior = match->figures;
-      last_match_ = match;
-    }
-    mapped.T_map_online = tracker_.T_map_odom() * step.T_odom_sensor;
-    mapped.verdict = lost ? Verdict::lost : verdict_by_prior();
-    records_.push_back({scan.index, step, mapped.T_map_online});
+    follow(odometry_.step(surfels), mapped, [&] { return surfels; });
+  }
+
+  void place_stretches(const Stretches& wanted, const std::function<void(std::vector<MappedScan>)>& placed) override {
+    std::vector<Stretch> stretches = stretches_of(wanted.first, wanted.last, wanted.options);
+    std::erase_if(stretches, [&](const Stretch& stretch) { return stretch.last <= wanted.first + records_.size(); });
+    std::vector<std::optional<DrivenStretch>> driven(stretches.size());
+    const auto most_ahead = static_cast<std::size_t>(wanted.jobs) + 1;
+    ordered_pipeline(
+        stretches.size(), wanted.jobs, most_ahead,
+        [&](std::size_t i) {
+          const bool first = stretches[i].first == wanted.first;
+          driven[i] = drive(stretches[i], wanted.source, options_, first ? std::optional(first_motion_) : std::nullopt);
+        },
+        [&](std::size_t i) { placed(join(stretches[i], *std::exchange(driven[i], std::nullopt), wanted.source)); });
   }
 
   std::vector<EstimatedPose> finish(const ReadScan& read_again) override { return estimate_drive(records_, prior_, read_again, options_); }
 
-  void exchange(StateArchive& archive) override { archive(odometry_, tracker_, last_match_, records_); }
+  void exchange(StateArchive& archive) override { archive(odometry_, T_odom_own_, tracker_, last_match_, records_); }
 
  private:
+  /// Follows the odometry in the prior. @param surfels  gives the scan's, for the prior to be asked
+  void follow(OdometryStep step, MappedScan& mapped, const std::function<SurfelCloud()>& surfels) {
+    step.T_odom_sensor = T_odom_own_ * step.T_odom_sensor;
+    if (!records_.empty()) mapped.local = step.figures;
+    if (step.began_anew) tracker_.begin_anew();
+    const bool lost = !records_.empty() && !step.joined;
+    if (!lost && tracker_.asks(step.T_odom_sensor)) {
+      if (const auto match = tracker_.follow(surfels(), step.T_odom_sensor)) {
+        mapped.prior = match->figures;
+        last_match_ = match;
+      }
+    }
+    mapped.T_map_online = tracker_.T_map_odom() * step.T_odom_sensor;
+    mapped.verdict = lost ? Verdict::lost : verdict_by_prior();
+    records_.push_back({mapped.index, step, mapped.T_map_online});
+  }
+
+  /// Goes on by the odometry of a stretch. Where it does not fit the one so far, the stretch is driven again by that one.
+  std::vector<MappedScan> join(const Stretch& stretch, DrivenStretch&& driven, const ScanSource& source) {
+    std::vector<MappedScan> placed;
+    const std::optional<Eigen::Isometry3d> T = records_.empty() ? Eigen::Isometry3d::Identity() : T_odom_stretch(records_, driven.shared);
+    if (T) {
+      T_odom_own_ = *T;
+      odometry_ = std::move(driven.odometry);
+    }
+    for (std::size_t i = stretch.first; i < stretch.last; ++i) {
+      const auto begin = std::chrono::steady_clock::now();
+      DrivenScan& here = driven.own[i - stretch.first];
+      MappedScan mapped = here.mapped;
+      if (T) {
+        follow(here.step, mapped, [&] { return reducer_.reduce(source.read(i).points); });
+      } else {
+        mapped.step_s = 0;
+        place(source.read(i), mapped);
+      }
+      mapped.step_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      placed.push_back(mapped);
+    }
+    return placed;
+  }
+
   Verdict verdict_by_prior() const {
     if (!last_match_ || last_match_->share < outside_share) return Verdict::outside_prior;
     if (!last_match_->figures.accepted) return Verdict::dead_reckoned;
@@ -42,8 +92,10 @@ class JointMethod : public MappingMethod {
 
   JointMethodOptions options_;
   std::optional<NearTiles> prior_;
+  Eigen::Isometry3d first_motion_;
   ScanReducer reducer_;
   Odometry odometry_;
+  Eigen::Isometry3d T_odom_own_ = Eigen::Isometry3d::Identity();   // of the frame of that odometry, where it began within the drive
   PriorTracker tracker_;
   std::optional<PriorMatch> last_match_;
   std::vector<ScanRecord> records_;

@@ -20,15 +20,32 @@ Mapper::Mapper(const MapperOptions& options, const std::optional<NearTiles>& pri
 Mapper::~Mapper() = default;
 Mapper::Mapper(Mapper&&) noexcept = default;
 
-const MappedScan& Mapper::step(const Scan& scan) {
+MappedScan facts_of(const Scan& scan) {
   MappedScan mapped;
   mapped.index = scan.index;
   mapped.stamp_s = scan.stamp_s;
   mapped.num_points = scan.points.size();
   mapped.num_skipped = scan.num_skipped;
+  return mapped;
+}
+
+void MappingMethod::place_stretches(const Stretches&, const std::function<void(std::vector<MappedScan>)>&) {
+  throw UsageError("--jobs goes with --preset default: the paper's method matches each scan to the prior from where the scan before it was placed, so that no stretch can begin before the last one ends");
+}
+
+const MappedScan& Mapper::step(const Scan& scan) {
+  MappedScan mapped = facts_of(scan);
   state_->method->place(scan, mapped);
   state_->scans.push_back(mapped);
   return state_->scans.back();
+}
+
+void Mapper::step_stretches(const ScanSource& source, std::size_t first, std::size_t last, const StretchOptions& options, int jobs,
+                            const std::function<void(std::span<const MappedScan>)>& placed) {
+  state_->method->place_stretches({source, first, last, options, jobs}, [&](const std::vector<MappedScan>& scans) {
+    state_->scans.insert(state_->scans.end(), scans.begin(), scans.end());
+    placed(scans);
+  });
 }
 
 std::size_t Mapper::num_scans() const { return state_->scans.size(); }

@@ -21,12 +21,25 @@ struct EstimatedPose {
   Matrix6d covariance = Matrix6d::Zero();
 };
 
+/// Scans [first, last) of a source, to be placed in stretches, `jobs` at once.
+struct Stretches {
+  const ScanSource& source;
+  std::size_t first, last;
+  StretchOptions options;
+  int jobs;
+};
+
+/// What is known of a scan before it is placed.
+MappedScan facts_of(const Scan& scan);
+
 /// One way to map a recording: the published one, or the joint one.
 class MappingMethod {
  public:
   virtual ~MappingMethod() = default;
   /// Places a scan when it comes: fills the online pose, the verdict and the figures of `mapped`.
   virtual void place(const Scan& scan, MappedScan& mapped) = 0;
+  /// Places those of the scans that are not placed yet, and tells after each stretch. @throws UsageError where each scan needs the one before
+  virtual void place_stretches(const Stretches& stretches, const std::function<void(std::vector<MappedScan>)>& placed);
   /// The poses of all scans from everything that is known at the end.
   virtual std::vector<EstimatedPose> finish(const ReadScan& read_again) = 0;
   /// All that the scans so far have left, for a method made with the same options, prior and start.

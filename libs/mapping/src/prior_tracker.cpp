@@ -73,8 +73,12 @@ void PriorTracker::exchange(StateArchive& archive) {
   archive(T_map_odom_, T_odom_last_, covariance_, prior_weight_, hypotheses_, num_heard_, num_surfels_heard_);
 }
 
+bool PriorTracker::asks(const Eigen::Isometry3d& T_odom_sensor) const {
+  return prior_ && !(T_odom_last_ && (T_odom_sensor.translation() - T_odom_last_->translation()).norm() < options_.keyframe_m);
+}
+
 std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, const Eigen::Isometry3d& T_odom_sensor) {
-  if (!prior_ || whole_scan.empty() || (T_odom_last_ && (T_odom_sensor.translation() - T_odom_last_->translation()).norm() < options_.keyframe_m)) return std::nullopt;
+  if (whole_scan.empty() || !asks(T_odom_sensor)) return std::nullopt;
   const Eigen::Isometry3d guess = T_map_odom_ * T_odom_sensor;
   const SurfelCloud scan = without_roofs(whole_scan, guess.linear(), scan_voxel_m_);
   if (scan.empty()) return std::nullopt;

@@ -36,6 +36,7 @@ Json configuration_of(const RunOptions& options, const MapperOptions& method) {
   return {{"preset", options.preset},
           {"start", options.start},
           {"limit", options.limit},
+          {"stretches", options.jobs > 1 ? described(options.stretches) : Json()},
           {"method", described(method)},
           {"map", options.no_map ? Json() : described(options.map)},
           {"initial_pose_from", !options.initial.lon_lat_deg.empty() ? "longitude and latitude" : !options.initial.pose.empty() ? "pose" : "origin"}};

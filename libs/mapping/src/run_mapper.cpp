@@ -57,15 +57,25 @@ struct OnlinePass {
   void exchange(StateArchive& archive) { archive(mapper, step_s); }
 };
 
-/// The online pass: every scan once, in order, from where `pass` stands.
-void map_scans(OnlinePass& pass, const ScanSource& source, ScanRange range, Checkpoints& checkpoints, const Events& events) {
+/// The online pass: every scan in order, from where `pass` stands.
+void map_scans(OnlinePass& pass, const ScanSource& source, ScanRange range, const RunOptions& options, Checkpoints& checkpoints, const Events& events) {
+  const auto went_on = [&] {
+    events.advance("mapping", static_cast<double>(pass.step_s.size()) / static_cast<double>(range.last - range.first));
+    checkpoints.offer([&](StateArchive& archive) { pass.exchange(archive); });
+  };
+  if (options.jobs > 1) {
+    pass.mapper.step_stretches(source, range.first, range.last, options.stretches, options.jobs, [&](std::span<const MappedScan> placed) {
+      for (const MappedScan& scan : placed) pass.step_s.push_back(scan.step_s);
+      went_on();
+    });
+    return;
+  }
   ReadAhead scans(source, range.first + pass.step_s.size(), range.last);
   Stopwatch watch;
   while (const auto scan = scans.next()) {
     pass.mapper.step(*scan);
     pass.step_s.push_back(watch.lap());
-    events.advance("mapping", static_cast<double>(pass.step_s.size()) / static_cast<double>(range.last - range.first));
-    checkpoints.offer([&](StateArchive& archive) { pass.exchange(archive); });
+    went_on();
   }
 }
 
@@ -165,7 +175,7 @@ RunSummary run_mapper(const RunOptions& options, int threads, Overwrite overwrit
   if (options.resume) resume(pass, checkpoints, range, events);
   times.start_s = watch.lap();
 
-  map_scans(pass, *source, range, checkpoints, events);
+  map_scans(pass, *source, range, options, checkpoints, events);
   times.online_s = watch.lap();
 
   std::vector<MappedScan> scans = pass.mapper.finish([&](std::size_t index) { return source->read(index); });

@@ -20,6 +20,7 @@ double milliseconds(double seconds) { return rounded(seconds * 1e3, 1e-3); }
 Json configuration(const RunFacts& facts) {
   Json json = configuration_of(facts.options, facts.method);
   json["threads"] = facts.threads;
+  json["jobs"] = facts.options.jobs;
   return json;
 }
 

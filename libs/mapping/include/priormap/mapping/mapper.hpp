@@ -3,13 +3,14 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <priormap/core/state_archive.hpp>
 #include <priormap/mapping/mapped_scan.hpp>
 #include <priormap/mapping/mapper_options.hpp>
 #include <priormap/mapping/prior_window.hpp>
-#include <priormap/mapping/scan.hpp>
+#include <priormap/mapping/scan_source.hpp>
 
 namespace priormap {
 
@@ -33,6 +34,12 @@ class Mapper {
 
   /// Places one scan. @return where it was taken, as far as is known when it comes
   const MappedScan& step(const Scan& scan);
+
+  /// Places the scans [first, last) of a source that it has not placed yet, `jobs` stretches at once: each is driven by an odometry of its own, and joined to the one before.
+  /// The result differs from that of single steps by millimetres; it depends on `options`, not on `jobs`.
+  /// @param placed  is told after each stretch how its scans went
+  /// @throws UsageError for the paper's method
+  void step_stretches(const ScanSource& source, std::size_t first, std::size_t last, const StretchOptions& options, int jobs, const std::function<void(std::span<const MappedScan>)>& placed);
 
   std::size_t num_scans() const;
   /// All that the scans so far have left, for a mapper made with the same options, prior and start.

@@ -132,6 +132,18 @@ struct JointMethodOptions {
   }
 };
 
+/// How a drive is cut into stretches that are driven at once.
+struct StretchOptions {
+  int scans = 250;
+  int overlap = 40;
+
+  template <class Visitor>
+  void describe(Visitor& visit) {
+    visit("stretch", scans, {"with --jobs above 1: scans of a stretch, or some more", "", 20, 1e6});
+    visit("stretch-overlap", overlap, {"with --jobs above 1: scans that a stretch begins early, to come to know the street; by them it is joined to the one before", "", 10, 1e4});
+  }
+};
+
 /// The parameters of the method. One set serves every sensor and place; `paper()` is the published one (VEHITS 2025).
 struct MapperOptions {
   std::variant<JointMethodOptions, PaperOptions> method;

@@ -25,6 +25,8 @@ struct RunOptions {
   std::string preset = "default";
   std::uint64_t start = 0;                ///< scans to leave out at the beginning
   std::uint64_t limit = 0;                ///< scans to map at most; 0: all
+  int jobs = 1;                           ///< stretches of the drive mapped at once; 1: in one piece
+  StretchOptions stretches;
   bool resume = false;                    ///< goes on where an interrupted run stood
   double checkpoint_s = 5;                ///< between states kept for that; 0: none
   bool no_map = false;
