@@ -172,7 +172,7 @@ class ModelSampler {
     }
     feature.ground_z = low;
     feature.height_m = high - low;
-    feature.outline = footprint_of(faces);
+    if (model.kind == ModelKind::building) feature.outline = footprint_of(faces);   // priormerge leaves out rasters inside: under a bridge there is a street
     return feature;
   }
 

@@ -31,3 +31,12 @@ succeeds priorinfo green --check
 
 succeeds citygml2prior town.gml --bridges=false -o houses
 [ "$(classes houses)" = "6 " ] || die "classes $(classes houses)"
+
+# The street under a bridge and the ground under a tree stay when priors are merged; that under a house goes.
+{
+  printf 'ncols 60\nnrows 10\nxllcorner 500000\nyllcorner 5300000\ncellsize 1\n'
+  for row in {1..10}; do for column in {1..60}; do printf '100.5 '; done; echo; done
+} >ground.asc
+succeeds dsm2prior ground.asc --kind terrain --source-crs EPSG:25832+7837 -o ground
+succeeds priormerge green ground -o both
+expect_in stdout "left out under models       100"
