@@ -83,7 +83,8 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
   if (surface) with_heights.push_back(heights_of(*surface, first));
 
   const LonLatArea area = lon_lat_area(bounds_by_file(input), outlines);
-  const GeoPoint middle{0.5 * (area.south_deg + area.north_deg), 0.5 * (area.west_deg + area.east_deg), 0};
+  std::optional<GeoPoint> middle;
+  if (area.west_deg <= area.east_deg) middle = GeoPoint{0.5 * (area.south_deg + area.north_deg), 0.5 * (area.west_deg + area.east_deg), 0};
   const Crs prior = resolve_prior_crs(prior_options, with_heights, middle, events);
   if (!ground_given) events.warn("the ground under the buildings is taken as 0 m; give --terrain or --ground-height");
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 #include <priormap/core/error.hpp>
 #include <priormap/geodesy/transformer.hpp>
@@ -65,19 +66,28 @@ std::string fitting_zone(const Crs& asked, const GeoPoint& place) {
   return "; " + Crs::utm_zone(place.lon_deg, place.lat_deg, is_etrs89(asked)).name() + " fits there";
 }
 
-/// The middle of --bbox, else of the inputs.
-GeoPoint place_of_data(const PriorOptions& options, const GeoPoint& middle) {
+constexpr double most_distortion = 0.01, border_deg = 0.25;
+
+double degrees_outside(const Crs& crs, const GeoPoint& place) {
+  const std::optional<AreaOfUse> area = crs.area_of_use();
+  return area ? area->degrees_outside(place) : 0;
+}
+
+/// Of the inputs' middle and that of --bbox, which may take a corner of them, the one that fits the CRS better.
+GeoPoint best_place(const Crs& crs, const PriorOptions& options, const GeoPoint& middle) {
   if (options.bbox.empty()) return middle;
   const std::vector<double>& b = options.bbox;
   const Transformer to_lon_lat(parse_option("--bbox-crs", options.bbox_crs).horizontal(), Crs::parse("EPSG:4326"));
   const Eigen::Vector3d p = to_lon_lat.forward({0.5 * (b[0] + b[2]), 0.5 * (b[1] + b[3]), 0});
-  return p.allFinite() ? GeoPoint{p.y(), p.x(), 0} : middle;
+  if (!p.allFinite()) return middle;
+  const GeoPoint middle_of_box{p.y(), p.x(), 0};
+  const auto misfit = [&](const GeoPoint& place) { return std::pair(crs.length_distortion(place) > most_distortion, degrees_outside(crs, place)); };
+  return misfit(middle_of_box) < misfit(middle) ? middle_of_box : middle;
 }
 
 /// A CRS that is asked for where it does not belong is a slip: mostly the wrong zone. Neighbouring zones are in use side by side, so
 /// that is said and done as asked; where a metre of the grid is no metre any more, spacing and sigmas would be wrong.
 void check_fits(const Crs& asked, const GeoPoint& place, const Events& events) {
-  constexpr double most_distortion = 0.01, border_deg = 0.25;
   std::ostringstream where;
   where << std::fixed << std::setprecision(3) << "longitude " << place.lon_deg << ", latitude " << place.lat_deg;
   const std::string name = "--crs " + asked.name() + " (" + asked.horizontal().human_name() + ")";
@@ -86,8 +96,8 @@ void check_fits(const Crs& asked, const GeoPoint& place, const Events& events) {
     if (std::isfinite(distortion)) how << "makes lengths wrong by " << std::setprecision(2) << 100 * distortion << " %"; else how << "does not reach";
     throw CrsError(name + " " + how.str() + " where the data lie (" + where.str() + ")" + fitting_zone(asked, place));
   }
+  if (degrees_outside(asked, place) <= border_deg) return;
   const std::optional<AreaOfUse> area = asked.area_of_use();
-  if (!area || area->degrees_outside(place) <= border_deg) return;
   events.warn(name + " is meant for longitudes " + degrees_text(area->west_deg, area->east_deg) + " and latitudes " + degrees_text(area->south_deg, area->north_deg) +
               ", the data lie at " + where.str() + fitting_zone(asked, place));
 }
@@ -143,10 +153,10 @@ InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>
   return {crs->with_vertical(assumed), assumed.name(), file};
 }
 
-Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const GeoPoint& middle, const Events& events) {
-  const Crs asked = options.crs.empty() ? default_horizontal(inputs, middle) : parse_option("--crs", options.crs);
+Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const std::optional<GeoPoint>& middle, const Events& events) {
+  const Crs asked = options.crs.empty() ? default_horizontal(inputs, middle.value_or(GeoPoint{})) : parse_option("--crs", options.crs);
   check_projected_in_metres(asked);
-  if (!options.crs.empty()) check_fits(asked, place_of_data(options, middle), events);
+  if (!options.crs.empty() && middle) check_fits(asked, best_place(asked, options, *middle), events);
   if (asked.has_vertical()) {
     for (const InputCrs& input : inputs)
       if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, but the prior is asked for in " + asked.name() + remedy);

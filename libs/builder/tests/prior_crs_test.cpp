@@ -107,6 +107,11 @@ TEST(PriorCrs, a_zone_beside_the_data_is_warned_of_and_a_far_one_refused) {
   EXPECT_NE(resolve(asked("EPSG:3857"), {"EPSG:4326"}).error.find("EPSG:3857"), std::string::npos) << "Web Mercator has no metres";
 }
 
+TEST(PriorCrs, a_box_beside_the_data_or_no_data_at_all_is_not_the_crs_s_fault) {
+  EXPECT_EQ(resolve(with([](auto& o) { o.crs = "EPSG:25832"; o.bbox = {0, 0, 1, 1}; }), {"EPSG:4326"}).error, "");
+  EXPECT_EQ(resolve_prior_crs(with([](auto& o) { o.crs = "EPSG:25832"; }), {}, std::nullopt, {}).name(), "EPSG:25832");
+}
+
 TEST(PriorCrs, what_a_box_keeps_counts_not_the_whole_file) {
   PriorOptions options = with([](auto& o) { o.crs = "EPSG:25833"; o.bbox = {13.3, 52.4, 13.5, 52.6}; });
   EXPECT_EQ(resolve(options, {"EPSG:25832"}, {51, 8, 0}).warnings.size(), 1u) << "undeclared heights alone";

@@ -121,6 +121,7 @@ TEST_F(OgrFootprints, EveryFormatGivesTheSameOutlines) {
 TEST_F(OgrFootprints, EastComesBeforeNorthInGaussKruegerOfEveryFormat) {
   const std::string at_9_east = R"({"type":"Polygon","coordinates":[[[9,48],[9.001,48],[9.001,48.001],[9,48.001],[9,48]]]})";
   const fs::path file = write_features(feature("", at_9_east));
+  GDALAllRegister();
   const char* words[] = {"-t_srs", "EPSG:31467", nullptr};
   for (const char* name : {"town.gpkg", "town.shp", "town.fgb", "town.gml", "projected.geojson"}) {
     auto* options = GDALVectorTranslateOptionsNew(const_cast<char**>(words), nullptr);
