@@ -20,10 +20,10 @@
 #include <priormap/tessellation/triangulate.hpp>
 
 #include "chunks.hpp"
-#include "cloud_buffer.hpp"
 #include "model_faces.hpp"
 #include "model_frame.hpp"
 #include "model_sight.hpp"
+#include "point_buffer.hpp"
 #include "visible_points.hpp"
 #include "wall_index.hpp"
 
@@ -183,7 +183,7 @@ class ModelSampler {
   double model_sigma_m_, vegetation_sigma_m_;
   PriorWriter& writer_;
   FaceSampler sampler_;
-  CloudBuffer buffer_;
+  PointBuffer buffer_;
   FacePoints collected_;
   std::vector<Eigen::Vector3d> points_, normals_;
 };

@@ -6,6 +6,7 @@
 #include <iomanip>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <sstream>
 #include <tuple>
 
@@ -121,16 +122,47 @@ PriorSource source_of(const RasterInput& input, const RasterPoints& points, cons
   return source;
 }
 
+/// Hands the points of a raster to the writer, block by block. They lie on the lattice already, their origins at whole units.
+class LatticeWriter {
+ public:
+  /// @param common  what all points of the raster share
+  LatticeWriter(const LasPoint& common, PriorWriter& writer) : writer_(writer), block_(capacity, common) {}
+
+  void write(const PointCloud& points) {
+    const LatticePoint corner{std::llround(points.origin.x() * 1000), std::llround(points.origin.y() * 1000)};
+    const auto base_z = static_cast<std::int32_t>(std::llround(points.origin.z() * 1000));
+    for (std::size_t first = 0; first < points.size(); first += capacity) {
+      const std::size_t count = std::min(capacity, points.size() - first);
+      for (std::size_t i = 0; i < count; ++i) {
+        const Eigen::Vector3f& offset = points.xyz[first + i];
+        LasPoint& point = block_[i];
+        point.x = steps(offset.x());
+        point.y = steps(offset.y());
+        point.z = base_z + steps(offset.z());
+        point.set_normal(points.normal[first + i]);
+      }
+      writer_.add(corner, std::span(block_).first(count));
+    }
+  }
+
+ private:
+  static std::int32_t steps(float offset) { return static_cast<std::int32_t>(offset * 1000.0 + std::copysign(0.5, offset)); }
+
+  static constexpr std::size_t capacity = 1024;   // stays in the fastest cache
+  PriorWriter& writer_;
+  std::vector<LasPoint> block_;
+};
+
 /// What one thread needs to turn a raster into points of the prior.
 class AreaWorker {
  public:
   AreaWorker(const RasterPoints& points, const BboxFilter& bbox, const std::vector<HeightRaster>& preferred) : points_(points), bbox_(bbox), preferred_(preferred) {}
 
   /// Calls visit(points) with those that belong to the prior.
-  void read(const Bounds2& area, const std::function<void(PointCloud&)>& visit) {
+  void read(const Bounds2& area, const std::function<void(const PointCloud&)>& visit) {
     points_.read(area, [&](PointCloud& cloud) {
       if (!bbox_.is_active() && preferred_.empty()) return visit(cloud);
-      PointCloud kept = kept_of(cloud);
+      const PointCloud kept = kept_of(cloud);
       if (!kept.empty()) visit(kept);
     });
   }
@@ -176,19 +208,6 @@ class WorkerPool {
   std::mutex mutex_;
   const AreaWorker& prototype_;
   std::vector<std::unique_ptr<AreaWorker>> idle_;
-};
-
-/// Everything that the points of one raster have in common.
-struct PointColumns {
-  PointClass point_class;
-  float sigma_m;
-  std::uint16_t source;
-
-  void fill(PointCloud& points) const {
-    points.classification.assign(points.size(), static_cast<std::uint8_t>(point_class));
-    points.sigma_m.assign(points.size(), sigma_m);
-    points.source.assign(points.size(), source);
-  }
 };
 
 /// Preferred rasters that may have heights where `raster` has.
@@ -241,7 +260,7 @@ class TileSquares {
 };
 
 /// Square by square; tiles that no later raster reaches are closed at once. @param later  where these lie
-std::uint64_t write_raster(const AreaWorker& prototype, const TileSquares& squares, const std::vector<Bounds2>& later, const PointColumns& columns,
+std::uint64_t write_raster(const AreaWorker& prototype, const TileSquares& squares, const std::vector<Bounds2>& later, const LasPoint& common,
                            PriorWriter& writer, int threads, const std::function<void(double)>& advance) {
   WorkerPool pool(prototype);
   std::atomic<std::uint64_t> num_points = 0;
@@ -250,9 +269,9 @@ std::uint64_t write_raster(const AreaWorker& prototype, const TileSquares& squar
     const TileSquares::Tiles tiles = squares.tiles(i);
     const Bounds2 area = squares.bounds(tiles);
     pool.with_worker([&](AreaWorker& worker) {
-      worker.read(area, [&](PointCloud& points) {
-        columns.fill(points);
-        writer.add(points);
+      LatticeWriter lattice(common, writer);
+      worker.read(area, [&](const PointCloud& points) {
+        lattice.write(points);
         num_points += points.size();
       });
     });
@@ -324,10 +343,12 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
     const RasterPoints points(inputs[i].file, inputs[i].crs.crs, prior, prior_options.spacing_m);
     const TileSquares squares(areas[i], prior_options.tile_size_m, prior_options.spacing_or(points.cell_size()));
     const std::vector<Bounds2> later(areas.begin() + static_cast<std::ptrdiff_t>(i) + 1, areas.end());
-    const PointColumns columns{raster_options.kind == "terrain" ? PointClass::ground : PointClass::unclassified, static_cast<float>(*sources[i].sigma_m),
-                               static_cast<std::uint16_t>(i)};
+    LasPoint common;
+    common.classification = static_cast<std::uint8_t>(raster_options.kind == "terrain" ? PointClass::ground : PointClass::unclassified);
+    common.source = static_cast<std::uint16_t>(i);
+    common.set_sigma(static_cast<float>(*sources[i].sigma_m));
     const auto advance = [&](double fraction) { events.advance("reading rasters", (static_cast<double>(i) + fraction) / static_cast<double>(inputs.size())); };
-    const std::uint64_t written = write_raster(AreaWorker(points, bbox, preferred_of(inputs, i, prior)), squares, later, columns, writer, threads, advance);
+    const std::uint64_t written = write_raster(AreaWorker(points, bbox, preferred_of(inputs, i, prior)), squares, later, common, writer, threads, advance);
     sources[i].facts = {{"kind", raster_options.kind}, {"cells", std::to_string(inputs[i].facts.width) + " x " + std::to_string(inputs[i].facts.height)}, {"points", std::to_string(written)}};
     num_points += written;
   }

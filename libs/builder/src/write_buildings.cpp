@@ -11,8 +11,8 @@
 #include <priormap/tessellation/sample.hpp>
 
 #include "chunks.hpp"
-#include "cloud_buffer.hpp"
 #include "outline_stages.hpp"
+#include "point_buffer.hpp"
 #include "visible_points.hpp"
 
 namespace priormap {
@@ -145,7 +145,7 @@ class SquareWriter {
   BboxFilter bbox_;
   PriorWriter& writer_;
   FaceSampler sampler_;
-  CloudBuffer buffer_;
+  PointBuffer buffer_;
   FacePoints collected_;
   std::vector<Eigen::Vector3d> points_;
 };

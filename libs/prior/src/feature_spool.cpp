@@ -85,6 +85,7 @@ std::uint32_t FeatureSpool::add(const Feature& feature) {
 }
 
 void FeatureSpool::mark_used(std::span<const std::uint32_t> numbers) {
+  if (numbers.empty()) return;
   const std::lock_guard lock(mutex_);
   for (const std::uint32_t number : numbers) {
     if (number >= items_.size()) throw Error("a point names feature " + std::to_string(number) + ", which the prior does not hold");

@@ -22,6 +22,10 @@ class FeatureSpool {
 
   /// The feature's number here. Of two that share source and id one remains, whatever the order: the smaller in its bytes.
   std::uint32_t add(const Feature& feature);
+  bool empty() const {
+    const std::lock_guard lock(mutex_);
+    return items_.empty();
+  }
   /// Only features that own a point are written.
   void mark_used(std::span<const std::uint32_t> numbers);
 

@@ -61,7 +61,7 @@ bool is_sorted(const std::vector<PointRecord>& points) {
 
 }  // namespace
 
-void sort_and_unite(std::vector<PointRecord>& points) {
+void sort_and_unite(std::vector<PointRecord>& points, std::vector<PointRecord>& sorted) {
   if (is_sorted(points)) return;
   PositionKeys order(points);
   constexpr std::size_t radix_pays = 256, ahead = 16;
@@ -71,7 +71,7 @@ void sort_and_unite(std::vector<PointRecord>& points) {
     std::sort(order.keys.begin(), order.keys.end());
 
   const std::size_t count = points.size();
-  std::vector<PointRecord> sorted;
+  sorted.clear();
   sorted.reserve(count);
   for (std::size_t first = 0; first < count;) {
     const std::size_t start = sorted.size();
@@ -87,7 +87,7 @@ void sort_and_unite(std::vector<PointRecord>& points) {
     }
     first = last;
   }
-  points = std::move(sorted);
+  points.swap(sorted);
 }
 
 }  // namespace priormap

@@ -30,19 +30,21 @@ class TileDistributor {
  public:
   TileDistributor(const LatticeGrid& grid, std::int64_t halo_steps, TileSpool& spool) : grid_(grid), halo_(halo_steps), spool_(spool) {}
 
-  void add(Block& block, std::size_t count) const {
-    for (std::size_t first = 0; first < count;) {
-      const TileKey key = grid_.key(block.x[first], block.y[first]);
+  /// @param x, y  of record i on the lattice, asked for before the record gets its own
+  template <class X, class Y>
+  void add(std::span<PointRecord> records, const X& x, const Y& y) const {
+    for (std::size_t first = 0; first < records.size();) {
+      const TileKey key = grid_.key(x(first), y(first));
       const std::int64_t low_x = grid_.origin(key.x), low_y = grid_.origin(key.y), size = grid_.tile_steps();
       std::size_t last = first;
-      for (; last < count; ++last) {
-        const std::int64_t dx = block.x[last] - low_x, dy = block.y[last] - low_y;
+      for (; last < records.size(); ++last) {
+        const std::int64_t dx = x(last) - low_x, dy = y(last) - low_y;
         if (dx < 0 || dy < 0 || dx >= size || dy >= size) break;
-        block.records[last].x = std::int32_t(dx);
-        block.records[last].y = std::int32_t(dy);
-        if (is_near_edge(dx, dy)) add_halo(block.records[last], block.x[last], block.y[last], key);
+        records[last].x = std::int32_t(dx);
+        records[last].y = std::int32_t(dy);
+        if (is_near_edge(dx, dy)) add_halo(records[last], dx + low_x, dy + low_y, key);
       }
-      spool_.add(key, std::span(block.records).subspan(first, last - first));
+      spool_.add(key, records.subspan(first, last - first));
       first = last;
     }
   }
@@ -69,6 +71,16 @@ class TileDistributor {
   std::int64_t halo_;
   TileSpool& spool_;
 };
+
+/// The features of points, each as often as it begins anew.
+template <class Points, class FeatureOf>
+std::vector<std::uint32_t> in_a_row(const Points& points, const FeatureOf& feature_of) {
+  std::vector<std::uint32_t> numbers;
+  std::uint32_t last = PointCloud::no_feature;
+  for (const auto& point : points)
+    if (const std::uint32_t number = feature_of(point); number != last && number != PointCloud::no_feature) numbers.push_back(last = number);
+  return numbers;
+}
 
 /// Where each source goes when they are in order of precedence, then id.
 std::vector<std::uint16_t> order_of(const std::vector<PriorSource>& sources) {
@@ -127,8 +139,8 @@ PriorAssembly::PriorAssembly(const std::filesystem::path& directory, PriorManife
 template <class Position>
 void PriorAssembly::add_each(const PointCloud& columns, const Position& position) {
   columns.check_columns();
-  check_sources(columns);
-  mark_features(columns);
+  if (!columns.source.empty()) check_source(*std::ranges::max_element(columns.source));
+  features_.mark_used(in_a_row(columns.feature, [](std::uint32_t feature) { return feature; }));
   const TileDistributor tiles(grid_, halo_steps_, tiles_);
   const auto block = std::make_unique<Block>();
   for (std::size_t first = 0; first < columns.size(); first += Block::capacity) {
@@ -140,8 +152,16 @@ void PriorAssembly::add_each(const PointCloud& columns, const Position& position
       block->y[i] = to_lattice(p.y());
       block->records[i].z = to_height_mm(p.z());
     }
-    tiles.add(*block, count);
+    tiles.add(std::span(block->records).first(count), [&](std::size_t i) { return block->x[i]; }, [&](std::size_t i) { return block->y[i]; });
   }
+}
+
+void PriorAssembly::add(LatticePoint corner, std::span<PointRecord> points) {
+  std::uint16_t largest_source = 0;
+  for (const PointRecord& p : points) largest_source = std::max(largest_source, p.source);
+  check_source(largest_source);
+  features_.mark_used(in_a_row(points, [](const PointRecord& p) { return p.feature; }));
+  TileDistributor(grid_, halo_steps_, tiles_).add(points, [&](std::size_t i) { return corner.x + points[i].x; }, [&](std::size_t i) { return corner.y + points[i].y; });
 }
 
 void PriorAssembly::add(const PointCloud& points) {
@@ -152,19 +172,8 @@ void PriorAssembly::add(const PointCloud& columns, std::span<const Eigen::Vector
   add_each(columns, [&](std::size_t i) -> const Eigen::Vector3d& { return positions[i]; });
 }
 
-void PriorAssembly::check_sources(const PointCloud& points) const {
-  const auto largest = std::ranges::max_element(points.source);
-  const std::size_t number = largest == points.source.end() ? 0 : *largest;
-  if (!points.empty() && number >= manifest_.sources.size())
-    throw Error("a point names source " + std::to_string(number) + ", which the prior does not hold");
-}
-
-void PriorAssembly::mark_features(const PointCloud& points) {
-  std::vector<std::uint32_t> numbers;
-  std::uint32_t last = PointCloud::no_feature;
-  for (const std::uint32_t number : points.feature)
-    if (number != last && number != PointCloud::no_feature) numbers.push_back(last = number);
-  if (!numbers.empty()) features_.mark_used(numbers);
+void PriorAssembly::check_source(std::size_t largest) const {
+  if (largest >= manifest_.sources.size()) throw Error("a point names source " + std::to_string(largest) + ", which the prior does not hold");
 }
 
 std::uint32_t PriorAssembly::add_feature(const Feature& feature) { return features_.add(feature); }
@@ -178,6 +187,7 @@ void PriorAssembly::set_sources(std::vector<PriorSource> sources) {
 }
 
 void PriorAssembly::renumber(std::vector<PointRecord>& points) const {
+  if (features_.empty() && std::ranges::is_sorted(source_index_)) return;   // a permutation: each keeps its number
   for (PointRecord& p : points) {
     p.source = source_index_[p.source];
     if (p.feature == PointCloud::no_feature) continue;
@@ -191,7 +201,9 @@ PriorAssembly::TileResult PriorAssembly::write_tile(TileKey key, const TileFilte
   if (filter) filter(key, points);
   if (halo_steps_ > 0) std::erase_if(points, is_halo);
   renumber(points);
-  sort_and_unite(points);
+  std::vector<PointRecord> spare = tiles_.spare();
+  sort_and_unite(points, spare);
+  tiles_.recycle(std::move(spare));
 
   TileResult result;
   result.entry.key = key;
@@ -208,6 +220,7 @@ PriorAssembly::TileResult PriorAssembly::write_tile(TileKey key, const TileFilte
   });
   out.close();
   result.entry.sha256 = hash.hex_digest();
+  tiles_.recycle(std::move(points));
 
   result.min = (extent.min().array().cast<double>() + corner) / 1000.0;
   result.max = (extent.max().array().cast<double>() + corner) / 1000.0;

@@ -8,6 +8,7 @@
 #include <priormap/core/events.hpp>
 #include <priormap/pointcloud/point_cloud.hpp>
 #include <priormap/prior/prior_manifest.hpp>
+#include <priormap/prior/prior_writer.hpp>
 
 #include "feature_spool.hpp"
 #include "lattice.hpp"
@@ -25,6 +26,8 @@ class PriorAssembly {
   void add(const PointCloud& points);
   /// The columns of a cloud at other positions, one a point.
   void add(const PointCloud& columns, std::span<const Eigen::Vector3d> positions);
+  /// As PriorWriter::add.
+  void add(LatticePoint corner, std::span<PointRecord> points);
   std::uint32_t add_feature(const Feature& feature);
   void set_sources(std::vector<PriorSource> sources);
   /// As PriorWriter::close_tile.
@@ -44,8 +47,7 @@ class PriorAssembly {
   TileResult write_tile(TileKey key, const TileFilter& filter);
   template <class Position>
   void add_each(const PointCloud& columns, const Position& position);
-  void check_sources(const PointCloud& points) const;
-  void mark_features(const PointCloud& points);
+  void check_source(std::size_t largest) const;
   void renumber(std::vector<PointRecord>& points) const;
 
   AtomicDirectory directory_;

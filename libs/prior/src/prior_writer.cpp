@@ -13,6 +13,7 @@ PriorWriter::PriorWriter(const std::filesystem::path& directory, PriorManifest m
 PriorWriter::~PriorWriter() = default;
 
 void PriorWriter::add(const PointCloud& points) { impl_->assembly.add(points); }
+void PriorWriter::add(LatticePoint corner, std::span<LasPoint> points) { impl_->assembly.add(corner, points); }
 std::uint32_t PriorWriter::add_feature(const Feature& feature) { return impl_->assembly.add_feature(feature); }
 void PriorWriter::close_tile(TileKey key) { impl_->assembly.close_tile(key); }
 void PriorWriter::set_sources(std::vector<PriorSource> sources) { impl_->assembly.set_sources(std::move(sources)); }

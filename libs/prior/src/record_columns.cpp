@@ -8,16 +8,6 @@ namespace {
 
 constexpr float normal_steps = 32767;
 
-std::int16_t normal_step(float component) {
-  const float steps = std::clamp(component, -1.0f, 1.0f) * normal_steps;
-  return std::int16_t(steps + std::copysign(0.5f, steps));   // signs are random: no branch
-}
-
-std::uint16_t sigma_step(float sigma_m) {
-  const double mm = double(sigma_m) * 1000.0 + 0.5;
-  return mm >= 0 ? std::uint16_t(std::min(mm, PointRecord::unknown_sigma - 1.0)) : PointRecord::unknown_sigma;
-}
-
 }  // namespace
 
 void fill_columns(const PointCloud& points, std::size_t first, std::span<PointRecord> records) {
@@ -27,11 +17,10 @@ void fill_columns(const PointCloud& points, std::size_t first, std::span<PointRe
     else
       for (std::size_t i = 0; i < records.size(); ++i) set(records[i], column[first + i]);
   };
-  fill(points.normal, [](PointRecord& r, const Eigen::Vector3f& v) { for (int a = 0; a < 3; ++a) r.normal[a] = normal_step(v[a]); },
-       Eigen::Vector3f(0, 0, 0));
+  fill(points.normal, [](PointRecord& r, const Eigen::Vector3f& v) { r.set_normal(v); }, Eigen::Vector3f(0, 0, 0));
   fill(points.classification, [](PointRecord& r, std::uint8_t v) { r.classification = v; }, std::uint8_t(0));
   fill(points.source, [](PointRecord& r, std::uint16_t v) { r.source = v; }, std::uint16_t(0));
-  fill(points.sigma_m, [](PointRecord& r, float v) { r.sigma_mm = sigma_step(v); }, std::numeric_limits<float>::quiet_NaN());
+  fill(points.sigma_m, [](PointRecord& r, float v) { r.set_sigma(v); }, std::numeric_limits<float>::quiet_NaN());
   fill(points.feature, [](PointRecord& r, std::uint32_t v) { r.feature = v; }, PointCloud::no_feature);
   fill(points.intensity, [](PointRecord& r, float v) { r.intensity = std::isnan(v) ? 0.0f : v; }, 0.0f);
   for (PointRecord& r : records) r.user_data = 0;

@@ -8,12 +8,29 @@ void TileSpool::add(TileKey key, std::span<const PointRecord> points) {
   Shard& owner = shard(key);
   {
     const std::lock_guard lock(owner.mutex);
-    std::vector<PointRecord>& collected = owner.tiles[key].points;
+    const auto [found, is_new] = owner.tiles.try_emplace(key);
+    std::vector<PointRecord>& collected = found->second.points;
     const std::size_t capacity_before = collected.capacity();
+    if (is_new) collected = spare();
     collected.insert(collected.end(), points.begin(), points.end());
     used_bytes_ += (collected.capacity() - capacity_before) * sizeof(PointRecord);
   }
   if (used_bytes_ > memory_bytes_) spill();
+}
+
+void TileSpool::recycle(std::vector<PointRecord>&& points) {
+  constexpr std::size_t most_spares = 4, largest = std::size_t(1) << 18;   // 32 MB
+  points.clear();
+  const std::lock_guard lock(spares_mutex_);
+  if (spares_.size() < most_spares && points.capacity() <= largest) spares_.push_back(std::move(points));
+}
+
+std::vector<PointRecord> TileSpool::spare() {
+  const std::lock_guard lock(spares_mutex_);
+  if (spares_.empty()) return {};
+  std::vector<PointRecord> points = std::move(spares_.back());
+  spares_.pop_back();
+  return points;
 }
 
 void TileSpool::spill() {
@@ -31,7 +48,9 @@ void TileSpool::spill() {
     block.clear();
     members.clear();
   };
-  for (Shard& owner : shards_) {
+  // Half of it: what is only a little too much need not go out as a whole.
+  for (std::size_t visited = 0; visited < shards_.size() && used_bytes_ > memory_bytes_ / 2; ++visited) {
+    Shard& owner = shards_[next_to_spill_++ % shards_.size()];
     const std::lock_guard lock(owner.mutex);
     for (auto& [key, tile] : owner.tiles) {
       if (tile.points.empty()) continue;

@@ -26,6 +26,10 @@ class TileSpool {
   std::vector<TileKey> keys() const;
   /// All points of a tile, in no particular order; the spool forgets them. @throws IoError
   std::vector<PointRecord> take(TileKey key);
+  /// Gives memory back that `take` or `spare` gave away, for tiles to come: new memory costs as much as what is done with it.
+  void recycle(std::vector<PointRecord>&& points);
+  /// Without points; with the room that a former tile needed, where one is left.
+  std::vector<PointRecord> spare();
 
  private:
   struct Tile {
@@ -47,6 +51,9 @@ class TileSpool {
   std::array<Shard, 64> shards_;
   SpillFile spill_;
   std::mutex spill_mutex_;
+  std::size_t next_to_spill_ = 0;   ///< of the shards
+  std::mutex spares_mutex_;
+  std::vector<std::vector<PointRecord>> spares_;
   std::atomic<std::size_t> used_bytes_ = 0;
   std::size_t memory_bytes_;
 };

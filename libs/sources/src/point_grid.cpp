@@ -1,7 +1,9 @@
 #include "point_grid.hpp"
 
-#include <array>
+#include <algorithm>
+#include <cstdint>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 namespace priormap {
@@ -80,13 +82,10 @@ std::optional<Eigen::Vector3d> origin_of(const PointGrid& grid) {
 }
 
 /// x, y, z (NaN: no point) and the normal of a grid's inner points, one array each, row by row.
-using Arrays = std::array<std::vector<float>, 6>;
-
-Arrays row_arrays(const PointGrid& grid, const Bounds2& area, const Eigen::Vector3d& origin) {
+void fill_work(PointGrid& grid, const Bounds2& area, const Eigen::Vector3d& origin) {
   const std::size_t width = grid.width - 2, height = grid.height - 2;
-  Arrays arrays;
-  for (auto& array : arrays) array.resize(width * height);
-  auto& [x, y, z, nx, ny, nz] = arrays;
+  for (auto& array : grid.work) array.resize(width * height);
+  auto& [x, y, z, nx, ny, nz] = grid.work;
   const Eigen::Vector3d zero = origin * 1000;
   const NormalRule normals(grid);
   for (std::size_t row = 0; row < height; ++row) {
@@ -98,7 +97,15 @@ Arrays row_arrays(const PointGrid& grid, const Bounds2& area, const Eigen::Vecto
     clear_outside(&grid.y[from], width, thousandths(area.min_y), thousandths(area.max_y), &z[to]);
     normals.of_row(&grid.z[from], grid.width, width, &nx[to], &ny[to], &nz[to]);
   }
-  return arrays;
+}
+
+/// Where the points of each column go; after the last one their number.
+std::vector<std::uint32_t> places_of_columns(const std::vector<float>& z, std::size_t width) {
+  std::vector<std::uint32_t> places(width + 1, 0);
+  for (std::size_t i = 0; i < z.size(); i += width)
+    for (std::size_t col = 0; col < width; ++col) places[col + 1] += z[i + col] == z[i + col];
+  std::partial_sum(places.begin(), places.end(), places.begin());
+  return places;
 }
 
 }  // namespace
@@ -111,27 +118,30 @@ void PointGrid::resize(std::size_t new_width, std::size_t new_height) {
   z.resize(size());
 }
 
-void points_of_grid(const PointGrid& grid, const Bounds2& area, PointCloud& points) {
+void points_of_grid(PointGrid& grid, const Bounds2& area, PointCloud& points) {
   points.clear();
   if (grid.width < 3 || grid.height < 3) return;
   const auto origin = origin_of(grid);
   if (!origin) return;
   points.origin = *origin;
-  const auto [x, y, z, nx, ny, nz] = row_arrays(grid, area, *origin);
+  fill_work(grid, area, *origin);
   const std::size_t width = grid.width - 2, height = grid.height - 2;
-  points.xyz.resize(width * height);
-  points.normal.resize(width * height);
-  std::size_t count = 0;
-  for (std::size_t col = 0; col < width; ++col) {
-    for (std::size_t row = height; row-- > 0;) {
-      const std::size_t i = row * width + col;
-      points.xyz[count] = {x[i], y[i], z[i]};
-      points.normal[count] = {nx[i], ny[i], nz[i]};
-      count += z[i] == z[i];
-    }
-  }
-  points.xyz.resize(count);
-  points.normal.resize(count);
+  std::vector<std::uint32_t> places = places_of_columns(grid.work[2], width);
+  points.xyz.resize(places.back());
+  points.normal.resize(places.back());
+  const float *x = grid.work[0].data(), *y = grid.work[1].data(), *z = grid.work[2].data();
+  const float *nx = grid.work[3].data(), *ny = grid.work[4].data(), *nz = grid.work[5].data();
+  Eigen::Vector3f *xyz = points.xyz.data(), *normal = points.normal.data();
+  std::uint32_t* place = places.data();
+  constexpr std::size_t stripe = 16;   // columns that share a line of the cache
+  for (std::size_t left = 0; left < width; left += stripe)
+    for (std::size_t row = height; row-- > 0;)
+      for (std::size_t col = left, i = row * width + left; col < std::min(left + stripe, width); ++col, ++i) {
+        if (std::isnan(z[i])) continue;
+        const std::uint32_t to = place[col]++;
+        xyz[to] = {x[i], y[i], z[i]};
+        normal[to] = {nx[i], ny[i], nz[i]};
+      }
 }
 
 }  // namespace priormap

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -17,12 +18,14 @@ struct PointGrid {
   /// The way from one point to the next one in its row, and to the one below: equal all over a grid of a few km, for normals.
   Eigen::Vector2d along = Eigen::Vector2d::Zero(), down = Eigen::Vector2d::Zero();
 
+  std::array<std::vector<float>, 6> work;   ///< of `points_of_grid`, kept from grid to grid
+
   void resize(std::size_t new_width, std::size_t new_height);
   std::size_t size() const { return width * height; }
 };
 
 /// Replaces `points` by the inner points inside of `area`, with their normals, column by column from the west and the south of a north-up
 /// grid: the order in which tiles are sorted. Positions are rounded to 0.001 first.
-void points_of_grid(const PointGrid& grid, const Bounds2& area, PointCloud& points);
+void points_of_grid(PointGrid& grid, const Bounds2& area, PointCloud& points);
 
 }  // namespace priormap

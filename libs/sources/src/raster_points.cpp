@@ -20,8 +20,8 @@ namespace {
 
 /// A cloud reaches no farther than this from its origin, so that float32 keeps the millimetre lattice.
 constexpr double cloud_extent = 2048;
-/// Cells along the edge of one cloud; and of a patch with normals of its own orientation, in another CRS.
-constexpr int cloud_edge = 512, patch_edge = 128;
+/// Cells along the edge of one cloud; and of a patch with normals of its own orientation, in another CRS. A stripe from north to south stays in the cache.
+constexpr int cloud_edge = 512, patch_edge = 128, stripe_width = 32;
 
 /// Transforms positions with a height in place; where that fails the height is lost.
 void transform_known(InterpolatedTransformer& transformer, PointGrid& grid, std::vector<Eigen::Vector3d>& buffer) {
@@ -101,7 +101,9 @@ class CellSampling {
     const RasterFacts& facts = raster_.facts();
     cell_size_ = target_cell_size(raster_, transformer_.exact());
     const double longer = cell_size_ * std::sqrt(std::max(facts.cell_x / facts.cell_y, facts.cell_y / facts.cell_x));
-    patch_edge_ = static_cast<int>(std::clamp(cloud_extent / longer, 1.0, static_cast<double>(is_identity() ? cloud_edge : patch_edge)));
+    const auto most_cells = [&](int wanted) { return static_cast<int>(std::clamp(cloud_extent / longer, 1.0, static_cast<double>(wanted))); };
+    patch_width_ = most_cells(is_identity() ? stripe_width : patch_edge);
+    patch_height_ = most_cells(is_identity() ? cloud_edge : patch_edge);
     bounds_ = target_bounds(facts, cell_size_, transformer_);
   }
 
@@ -134,10 +136,10 @@ class CellSampling {
   /// Calls visit(patch, its part in the window). Patches of a raster in another CRS do not depend on the window: their normals share an orientation.
   template <class Visit>
   void for_each_patch(const CellWindow& w, const Visit& visit) const {
-    const auto first = [&](int v) { return is_identity() ? v : v / patch_edge_ * patch_edge_; };
-    for (int row = first(w.row); row < w.row + w.height; row += patch_edge_) {
-      for (int col = first(w.col); col < w.col + w.width; col += patch_edge_) {
-        const CellWindow patch{col, row, std::min(patch_edge_, raster_.facts().width - col), std::min(patch_edge_, raster_.facts().height - row)};
+    const auto first = [&](int v, int edge) { return is_identity() ? v : v / edge * edge; };
+    for (int row = first(w.row, patch_height_); row < w.row + w.height; row += patch_height_) {
+      for (int col = first(w.col, patch_width_); col < w.col + w.width; col += patch_width_) {
+        const CellWindow patch{col, row, std::min(patch_width_, raster_.facts().width - col), std::min(patch_height_, raster_.facts().height - row)};
         const int left = std::max(col, w.col), top = std::max(row, w.row);
         visit(patch, CellWindow{left, top, std::min(col + patch.width, w.col + w.width) - left, std::min(row + patch.height, w.row + w.height) - top});
       }
@@ -186,7 +188,7 @@ class CellSampling {
   RasterFile raster_;
   InterpolatedTransformer transformer_, back_;
   double cell_size_ = 0;
-  int patch_edge_ = 0;
+  int patch_width_ = 0, patch_height_ = 0;
   std::optional<Bounds2> bounds_;
   CellWindow held_;   ///< whose heights are these:
   std::vector<double> heights_;

@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -74,6 +76,18 @@ struct LasPoint {
   float intensity = 0;
 
   static constexpr std::uint16_t unknown_sigma = 65535;
+
+  void set_normal(const Eigen::Vector3f& unit) {
+    for (int a = 0; a < 3; ++a) {
+      const float steps = std::clamp(unit[a], -1.0f, 1.0f) * 32767;
+      normal[a] = std::int16_t(steps + std::copysign(0.5f, steps));   // signs are random: no branch
+    }
+  }
+  /// NaN: unknown.
+  void set_sigma(float sigma_m) {
+    const double mm = double(sigma_m) * 1000.0 + 0.5;
+    sigma_mm = mm >= 0 ? std::uint16_t(std::min(mm, unknown_sigma - 1.0)) : unknown_sigma;
+  }
 };
 static_assert(sizeof(LasPoint) == 32);
 

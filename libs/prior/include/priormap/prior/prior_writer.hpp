@@ -1,16 +1,24 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include <priormap/core/atomic_output.hpp>
 #include <priormap/core/events.hpp>
 #include <priormap/geodesy/tile_grid.hpp>
+#include <priormap/pointcloud/las.hpp>
 #include <priormap/pointcloud/point_cloud.hpp>
 #include <priormap/prior/feature.hpp>
 #include <priormap/prior/prior_manifest.hpp>
 
 namespace priormap {
+
+/// A place on the lattice of 0.001 CRS units.
+struct LatticePoint {
+  std::int64_t x = 0, y = 0;
+};
 
 /// Writes a prior directory, whole or not at all, with bounded memory: points are collected per tile, beyond `memory_bytes` on disk.
 /// Each tile is sorted (x, y, z, then the other columns), so the bytes depend on the set of points alone: not on order, threads or
@@ -33,6 +41,9 @@ class PriorWriter {
   /// Adds points in the prior's CRS. `feature` holds the numbers returned by `add_feature`, `source` positions in the sources as they
   /// were given. Thread-safe. @throws Error for a position that is no number, or an unknown source or feature.
   void add(const PointCloud& points);
+  /// Points on the lattice already, which need no rounding and no columns: x and y count from `corner`, z is the height [0.001 CRS units]. Takes their x and y.
+  /// Thread-safe. @throws Error for an unknown source or feature.
+  void add(LatticePoint corner, std::span<LasPoint> points);
   /// Thread-safe. The returned number is the writer's own; `finish` renumbers features in order of (source, id) and leaves out
   /// those without a point. A feature given twice with the same (source, id) is one feature.
   std::uint32_t add_feature(const Feature& feature);
