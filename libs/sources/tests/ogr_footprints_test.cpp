@@ -130,7 +130,7 @@ TEST_F(OgrFootprints, EastComesBeforeNorthInGaussKruegerOfEveryFormat) {
     GDALClose(GDALVectorTranslate((folder_ / name).c_str(), nullptr, 1, &handle, options, nullptr));
     GDALClose(source);
     GDALVectorTranslateOptionsFree(options);
-    const FootprintLayers layers = read_ogr_footprints(folder_ / name, {}, diagnostics_);
+    const Layers layers = read(folder_ / name, {});
     ASSERT_TRUE(layers.crs && layers.crs->is_projected()) << name;
     ASSERT_EQ(layers.footprints.size(), 1u) << name;
     const Eigen::Vector2d corner = layers.footprints[0].rings[0][0];
