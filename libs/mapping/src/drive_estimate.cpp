@@ -6,6 +6,7 @@
 
 #include "confidence.hpp"
 #include "prior_pieces.hpp"
+#include "sweep_motion.hpp"
 
 namespace priormap {
 namespace {
@@ -39,8 +40,9 @@ class PriorComparison {
   PriorComparison(const NearTiles& prior, const ReadScan& read, const JointMethodOptions& options)
       : prior_(prior, SurfelMap(options.tracking.prior)), read_(read), reducer_(options.reduce_m), registration_(one_step(options.tracking.registration)) {}
 
-  std::vector<PlaneMatch> at(std::size_t scan, const Eigen::Isometry3d& T_map_sensor) {
-    const SurfelCloud surfels = reducer_.reduce(read_(scan).points);
+  std::vector<PlaneMatch> at(const ScanRecord& record, const Eigen::Isometry3d& T_map_sensor) {
+    SurfelCloud surfels = reducer_.reduce(read_(record.index).points);
+    undo_motion(surfels, record.odometry.velocity);
     const JointTarget target{&prior_.around(T_map_sensor.translation()), 0.0, 1.0};
     registration_.align(surfels, {&target, 1}, T_map_sensor);
     return registration_.plane_matches(0);
@@ -57,6 +59,14 @@ class PriorComparison {
   JointRegistration registration_;
 };
 
+/// In the middle of a sweep, what came after tells as much of the motion as what came before.
+void center_velocities(std::vector<ScanRecord>& records) {
+  for (std::size_t i = 1; i + 1 < records.size(); ++i) {
+    OdometryStep &now = records[i].odometry, &next = records[i + 1].odometry;
+    if (now.joined && next.joined) now.velocity = 0.5 * (now.velocity + next.velocity);
+  }
+}
+
 /// The graph of a drive.
 class DriveGraph {
  public:
@@ -65,7 +75,7 @@ class DriveGraph {
     T_map_start_ = poses_.front();
   }
   std::size_t size() const { return keyframes_.size(); }
-  std::size_t scan(std::size_t k) const { return records_[keyframes_[k].record].index; }
+  const ScanRecord& record(std::size_t k) const { return records_[keyframes_[k].record]; }
   const Eigen::Isometry3d& pose(std::size_t k) const { return poses_[k]; }
 
   /// @return the marginals at the new poses
@@ -98,6 +108,7 @@ class DriveGraph {
         poses[i].T_map_sensor = retract(before, share * local_coordinates(before, after));
         const Matrix6d A = adjoint(step.T_odom_sensor.inverse() * T_odom(k));
         poses[i].covariance = A * covariances[k] * A.transpose();
+        poses[i].velocity = step.velocity;
         if (i != begin) poses[i].covariance += step.joined ? covariance_of(step.information) : carried_covariance();
       }
     }
@@ -117,9 +128,10 @@ class DriveGraph {
 
 }  // namespace
 
-std::vector<EstimatedPose> estimate_drive(const std::vector<ScanRecord>& records, const std::optional<NearTiles>& prior, const ReadScan& read_again,
+std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const std::optional<NearTiles>& prior, const ReadScan& read_again,
                                           const JointMethodOptions& options) {
   const EstimateOptions& how = options.estimate;
+  center_velocities(records);
   DriveGraph graph(records, how);
   PiecesOfPrior pieces(how.piece_m, how.range_m);
   const PieceSigmas stated = {{how.wall_sigma_m, how.slope_sigma_m, how.ground_sigma_m}};
@@ -133,7 +145,7 @@ std::vector<EstimatedPose> estimate_drive(const std::vector<ScanRecord>& records
       // Coarse to fine: until the offsets are known, what strays is not yet an outlier.
       const double coarse = pass == 0 ? 3 : 1;
       for (std::size_t k = 0; k < graph.size(); ++k)
-        pieces.add(k, graph.pose(k), comparison.at(graph.scan(k), graph.pose(k)), {how.surface_sigma_m, coarse * how.kernel_width});
+        pieces.add(k, graph.pose(k), comparison.at(graph.record(k), graph.pose(k)), {how.surface_sigma_m, coarse * how.kernel_width});
     }
     marginals = graph.estimate(pieces, sigmas, weights);
     if (pass + 1 < how.passes) sigmas = pieces.estimated_sigmas(stated, sigmas, marginals.pieces, weights);

@@ -15,6 +15,7 @@ namespace priormap {
 /// What the online pass says of one scan: all that the estimate of the whole drive needs.
 struct ScanRecord {
   std::size_t index;              ///< in the recording
+  double stamp_s;
   OdometryStep odometry;
   Eigen::Isometry3d T_map_online;
 };
@@ -25,7 +26,7 @@ struct ScanRecord {
 /// A match to the local map errs about as much as its information says, but the next one errs about the same map, not about the last pose: the errors do not add up
 /// scan by scan. What adds up is the drift of the map itself, by the way driven. So keyframes stand some metres apart, between two of them counts one match, and the
 /// scans in between ride along.
-std::vector<EstimatedPose> estimate_drive(const std::vector<ScanRecord>& records, const std::optional<NearTiles>& prior, const ReadScan& read_again,
+std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const std::optional<NearTiles>& prior, const ReadScan& read_again,
                                           const JointMethodOptions& options);
 
 }  // namespace priormap

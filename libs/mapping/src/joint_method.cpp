@@ -9,6 +9,7 @@
 #include "odometry.hpp"
 #include "prior_tracker.hpp"
 #include "stretch.hpp"
+#include "sweep_motion.hpp"
 
 namespace priormap {
 namespace {
@@ -17,11 +18,13 @@ namespace {
 class JointMethod : public MappingMethod {
  public:
   JointMethod(const JointMethodOptions& options, const std::optional<NearTiles>& prior, const FirstPose& first)
-      : options_(options), prior_(prior), first_motion_(first.motion), reducer_(options.reduce_m), odometry_(options.odometry, first.motion), tracker_(options.tracking, options.reduce_m, prior, first.T_map_sensor) {}
+      : options_(options), prior_(prior), first_velocity_(steady_velocity(Eigen::Isometry3d::Identity(), first.motion, first.motion_s)), reducer_(options.reduce_m),
+        odometry_(options.odometry, first_velocity_), tracker_(options.tracking, options.reduce_m, prior, first.T_map_sensor) {}
 
   void place(const Scan& scan, MappedScan& mapped) override {
-    const SurfelCloud surfels = reducer_.reduce(scan.points);
-    follow(odometry_.step(surfels), mapped, [&] { return surfels; });
+    SurfelCloud surfels = reducer_.reduce(scan.points);
+    const OdometryStep step = odometry_.step(surfels, scan.stamp_s);
+    follow(step, mapped, [&] { return surfels; });
   }
 
   void place_stretches(const Stretches& wanted, const std::function<void(std::vector<MappedScan>)>& placed) override {
@@ -33,7 +36,7 @@ class JointMethod : public MappingMethod {
         stretches.size(), wanted.jobs, most_ahead,
         [&](std::size_t i) {
           const bool first = stretches[i].first == wanted.first;
-          driven[i] = drive(stretches[i], wanted.source, options_, first ? std::optional(first_motion_) : std::nullopt);
+          driven[i] = drive(stretches[i], wanted.source, options_, first ? std::optional(first_velocity_) : std::nullopt);
         },
         [&](std::size_t i) { placed(join(stretches[i], *std::exchange(driven[i], std::nullopt), wanted.source)); });
   }
@@ -57,7 +60,13 @@ class JointMethod : public MappingMethod {
     }
     mapped.T_map_online = tracker_.T_map_odom() * step.T_odom_sensor;
     mapped.verdict = lost ? Verdict::lost : verdict_by_prior();
-    records_.push_back({mapped.index, step, mapped.T_map_online});
+    records_.push_back({mapped.index, mapped.stamp_s, step, mapped.T_map_online});
+  }
+
+  SurfelCloud straightened(const Scan& scan, const Vector6d& velocity) {
+    SurfelCloud surfels = reducer_.reduce(scan.points);
+    undo_motion(surfels, velocity);
+    return surfels;
   }
 
   /// Goes on by the odometry of a stretch. Where it does not fit the one so far, the stretch is driven again by that one.
@@ -73,7 +82,7 @@ class JointMethod : public MappingMethod {
       DrivenScan& here = driven.own[i - stretch.first];
       MappedScan mapped = here.mapped;
       if (T) {
-        follow(here.step, mapped, [&] { return reducer_.reduce(source.read(i).points); });
+        follow(here.step, mapped, [&] { return straightened(source.read(i), here.step.velocity); });
       } else {
         mapped.step_s = 0;
         place(source.read(i), mapped);
@@ -92,7 +101,7 @@ class JointMethod : public MappingMethod {
 
   JointMethodOptions options_;
   std::optional<NearTiles> prior_;
-  Eigen::Isometry3d first_motion_;
+  Vector6d first_velocity_;
   ScanReducer reducer_;
   Odometry odometry_;
   Eigen::Isometry3d T_odom_own_ = Eigen::Isometry3d::Identity();   // of the frame of that odometry, where it began within the drive

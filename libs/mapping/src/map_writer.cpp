@@ -5,6 +5,7 @@
 #include <priormap/core/parallel.hpp>
 #include <priormap/prior/prior_writer.hpp>
 
+#include "sweep_motion.hpp"
 #include "voxel_occupancy.hpp"
 
 namespace priormap {
@@ -36,10 +37,11 @@ class LocalProjection {
 };
 
 /// The points of a scan that may go into the map, in `map` relative to the sensor: one a voxel.
-PointCloud thinned_in_map(const Scan& scan, const Eigen::Isometry3d& T_map_sensor, const MapOptions& options) {
+PointCloud thinned_in_map(Scan scan, const MappedScan& mapped, const MapOptions& options) {
   PointCloud points;
-  points.origin = T_map_sensor.translation();
-  const Eigen::Matrix3f R = T_map_sensor.linear().cast<float>();
+  points.origin = mapped.T_map_sensor.translation();
+  const Eigen::Matrix3f R = mapped.T_map_sensor.linear().cast<float>();
+  undo_motion(scan.points, mapped.velocity);
   const auto range2 = static_cast<float>(options.range_m * options.range_m);
   VoxelOccupancy occupied(options.voxel_m);
   const bool has_intensity = !scan.points.intensity.empty();
@@ -78,7 +80,7 @@ PriorManifest write_map(const std::filesystem::path& directory, const ScanSource
   std::vector<PointCloud> waiting(scans.size());
   ordered_pipeline(
       scans.size(), threads, window,
-      [&](std::size_t i) { waiting[i] = thinned_in_map(source.read(scans[i].index), scans[i].T_map_sensor, options); },
+      [&](std::size_t i) { waiting[i] = thinned_in_map(source.read(scans[i].index), scans[i], options); },
       [&](std::size_t i) {
         const PointCloud thinned = std::exchange(waiting[i], {});
         const Eigen::Vector3d center = scans[i].T_map_sensor.translation();

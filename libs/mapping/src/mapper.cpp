@@ -60,6 +60,7 @@ std::vector<MappedScan> Mapper::finish(const ReadScan& read_again) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     state_->scans[i].T_map_sensor = poses[i].T_map_sensor;
     state_->scans[i].covariance = poses[i].covariance;
+    state_->scans[i].velocity = poses[i].velocity;
   }
   return state_->scans;
 }

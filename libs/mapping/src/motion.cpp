@@ -41,4 +41,10 @@ Eigen::Isometry3d motion_at_start(const ScanSource& source, std::size_t first, s
   return T_first_second.inverse() * registration.align(third, targets, T_first_second * T_first_second).T_map_scan;
 }
 
+double period_at_start(const ScanSource& source, std::size_t first, std::size_t last) {
+  constexpr double usual_s = 0.1;
+  const double period_s = last - first < 2 ? 0 : source.stamp_s(first + 1) - source.stamp_s(first);
+  return period_s > 0 ? period_s : usual_s;
+}
+
 }  // namespace priormap

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include <priormap/mapping/motion.hpp>
+#include "sweep_motion.hpp"
 
 namespace priormap {
 
@@ -24,15 +24,21 @@ void UsualFit::take(const MatchFigures& match) {
   rmse_m_ += weight * (match.inlier_rmse_m - rmse_m_);
 }
 
-Odometry::Odometry(const OdometryOptions& options, const Eigen::Isometry3d& first_motion)
-    : options_(options), registration_(options.registration), local_map_(options.local_map), T_odom_before_last_(first_motion.inverse()),
-      T_odom_last_(Eigen::Isometry3d::Identity()) {}
+Odometry::Odometry(const OdometryOptions& options, const Vector6d& first_velocity)
+    : options_(options), registration_(options.registration), local_map_(options.local_map), T_odom_last_(Eigen::Isometry3d::Identity()), velocity_(first_velocity) {}
+
+/// Stamps that stand still say nothing, and no motion stays steady for long.
+double Odometry::time_since_last(double stamp_s) const {
+  constexpr double usual_s = 0.1, longest_s = 1;
+  const double duration_s = stamp_s - stamp_last_s_;
+  return duration_s > 0 ? std::min(duration_s, longest_s) : usual_s;
+}
 
 /// The motion carried on; or with another pitch and roll, where the scan fits better so: a platform that rocks turns back as often as it turns on. Its yaw stays: the rings of
 /// the lasers on the ground fit best where nothing has turned.
-Eigen::Isometry3d Odometry::better_guess(const SurfelCloud& scan) {
+Eigen::Isometry3d Odometry::better_guess(const SurfelCloud& scan, double duration_s) {
   constexpr double rocking_rad = 0.01, blur_m = 0.3;
-  const Eigen::Isometry3d carried = predict(T_odom_before_last_, T_odom_last_);
+  const Eigen::Isometry3d carried = moved_on(T_odom_last_, velocity_, duration_s);
   const Eigen::Vector3d turn = log_so3(Eigen::Quaterniond(T_odom_last_.linear().transpose() * carried.linear()));
   if (turn.head<2>().norm() < rocking_rad) return carried;
   const std::array targets = {JointTarget{&local_map_, options_.local_sigma_m, 1.0}};
@@ -60,6 +66,20 @@ OdometryStep Odometry::matched(const SurfelCloud& scan, const Eigen::Isometry3d&
   return found;
 }
 
+/// The sweep is straightened by the motion so far, and once more where the match shows another.
+OdometryStep Odometry::matched_in_motion(SurfelCloud& scan, double duration_s) {
+  constexpr double least_m = 0.01, range_m = 30;
+  const SurfelCloud raw = scan;
+  undo_motion(scan, velocity_);
+  OdometryStep found = matched(scan, better_guess(scan, duration_s));
+  if (!found.joined) return found;
+  const Vector6d velocity = steady_velocity(T_odom_last_, found.T_odom_sensor, duration_s), change = velocity - velocity_;
+  if (longest_time_s(raw) * (change.tail<3>().norm() + range_m * change.head<3>().norm()) < least_m) return found;
+  scan = raw;
+  undo_motion(scan, velocity);
+  return matched(scan, found.T_odom_sensor);
+}
+
 /// While lost, the local map stays as it was: the way back is looked for around the last good pose, now and then in a wider circle.
 OdometryStep Odometry::found_again(const SurfelCloud& scan) {
   constexpr int search_each = 10;
@@ -72,15 +92,19 @@ OdometryStep Odometry::found_again(const SurfelCloud& scan) {
   return matched(scan, registration_.search(scan, targets, T_odom_last_, circle).front().match.T_map_scan);
 }
 
-OdometryStep Odometry::step(const SurfelCloud& scan) {
+OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
   constexpr int give_up_after = 100;
   OdometryStep found;
   found.T_odom_sensor = T_odom_last_;
-  if (!local_map_.empty()) {
-    const Eigen::Isometry3d guess = better_guess(scan);
-    found = matched(scan, guess);
+  if (local_map_.empty()) {
+    undo_motion(scan, velocity_);
+  } else {
+    const double duration_s = time_since_last(stamp_s);
+    found = matched_in_motion(scan, duration_s);
+    const Eigen::Isometry3d guess = found.T_odom_sensor;
     if (!found.joined && num_lost_ > 0) found = found_again(scan);
     if (!found.joined) {
+      found.velocity = velocity_;
       found.T_odom_sensor = guess;
       if (++num_lost_ < give_up_after) return found;
       found.began_anew = true;   // a gap in the recording, perhaps: the old street does not come back
@@ -89,10 +113,15 @@ OdometryStep Odometry::step(const SurfelCloud& scan) {
     } else {
       fits_.take(found.figures);
     }
+    if (found.began_anew)
+      velocity_.setZero();
+    else if (num_lost_ == 0)
+      velocity_ = steady_velocity(T_odom_last_, found.T_odom_sensor, duration_s);
     num_lost_ = 0;
-    T_odom_before_last_ = found.began_anew ? found.T_odom_sensor : T_odom_last_;
     T_odom_last_ = found.T_odom_sensor;
   }
+  found.velocity = velocity_;
+  stamp_last_s_ = stamp_s;
   local_map_.insert(scan, found.T_odom_sensor);
   local_map_.remove_beyond(found.T_odom_sensor.translation(), options_.local_map_radius_m);
   return found;

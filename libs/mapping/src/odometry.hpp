@@ -15,6 +15,7 @@ struct OdometryStep {
   bool joined = false;                       ///< matched; otherwise lost (for the first scan there is nothing to match)
   bool began_anew = false;                   ///< nothing was found for so long that the local map begins again here: how far off is not known
   Matrix6d information = Matrix6d::Zero();   ///< of the match, tangent in sensor axes
+  Vector6d velocity = Vector6d::Zero();      ///< rad/s, m/s in sensor axes, by which the motion within the sweep was undone
   MatchFigures figures;
 };
 
@@ -33,20 +34,25 @@ class UsualFit {
 /// Scan to local map, in a frame of its own, `odom` (REP 105), that begins at the first scan. Knows nothing of the prior: its errors are its own.
 class Odometry {
  public:
-  /// @param first_motion  T_previous_sensor at the first scan
-  Odometry(const OdometryOptions& options, const Eigen::Isometry3d& first_motion);
-  OdometryStep step(const SurfelCloud& scan);
-  void exchange(StateArchive& archive) { archive(local_map_, T_odom_before_last_, T_odom_last_, fits_, num_lost_); }
+  /// @param first_velocity  rad/s, m/s in sensor axes, at the first scan
+  Odometry(const OdometryOptions& options, const Vector6d& first_velocity);
+  /// @param scan  as the moving sensor saw it; on return as it would have been seen from where the sensor was at the stamp
+  OdometryStep step(SurfelCloud& scan, double stamp_s);
+  void exchange(StateArchive& archive) { archive(local_map_, T_odom_last_, stamp_last_s_, velocity_, fits_, num_lost_); }
 
  private:
-  Eigen::Isometry3d better_guess(const SurfelCloud& scan);
+  double time_since_last(double stamp_s) const;
+  Eigen::Isometry3d better_guess(const SurfelCloud& scan, double duration_s);
   OdometryStep matched(const SurfelCloud& scan, const Eigen::Isometry3d& guess);
+  OdometryStep matched_in_motion(SurfelCloud& scan, double duration_s);
   OdometryStep found_again(const SurfelCloud& scan);
 
   OdometryOptions options_;
   JointRegistration registration_;
   SurfelMap local_map_;
-  Eigen::Isometry3d T_odom_before_last_, T_odom_last_;   // of scans that were matched
+  Eigen::Isometry3d T_odom_last_;   // of the last scan that was matched,
+  double stamp_last_s_ = 0;
+  Vector6d velocity_;               // and there
   UsualFit fits_;
   int num_lost_ = 0;
 };

@@ -170,7 +170,7 @@ RunSummary run_mapper(const RunOptions& options, int threads, Overwrite overwrit
   if (prior) warn_of_height(start, *prior, events);
   std::optional<NearTiles> near;
   if (prior) near.emplace(*prior, start.frame, method.prior_radius_m, threads);
-  OnlinePass pass{Mapper(method, near, {start.T_map_sensor, motion_at_start(*source, range.first, range.last)}, threads), {}};
+  OnlinePass pass{Mapper(method, near, {start.T_map_sensor, motion_at_start(*source, range.first, range.last), period_at_start(*source, range.first, range.last)}, threads), {}};
   Checkpoints checkpoints(output, identity_of(options, method, *source, range, prior.get()), options.checkpoint_s, events);
   if (options.resume) resume(pass, checkpoints, range, events);
   times.start_s = watch.lap();

@@ -6,7 +6,16 @@
 #include <priormap/mapping/motion.hpp>
 #include <priormap/registration/scan_reducer.hpp>
 
+#include "sweep_motion.hpp"
+
 namespace priormap {
+namespace {
+
+Vector6d velocity_at_start(const ScanSource& source, const Stretch& stretch) {
+  return steady_velocity(Eigen::Isometry3d::Identity(), motion_at_start(source, stretch.begin, stretch.last), period_at_start(source, stretch.begin, stretch.last));
+}
+
+}  // namespace
 
 std::vector<Stretch> stretches_of(std::size_t first, std::size_t last, const StretchOptions& options) {
   const std::size_t count = last - first, parts = std::max<std::size_t>(1, count / static_cast<std::size_t>(options.scans));
@@ -19,14 +28,15 @@ std::vector<Stretch> stretches_of(std::size_t first, std::size_t last, const Str
   return stretches;
 }
 
-DrivenStretch drive(const Stretch& stretch, const ScanSource& source, const JointMethodOptions& options, const std::optional<Eigen::Isometry3d>& first_motion) {
+DrivenStretch drive(const Stretch& stretch, const ScanSource& source, const JointMethodOptions& options, const std::optional<Vector6d>& first_velocity) {
   using Clock = std::chrono::steady_clock;
   ScanReducer reducer(options.reduce_m);
-  DrivenStretch driven{{}, {}, Odometry(options.odometry, first_motion ? *first_motion : motion_at_start(source, stretch.begin, stretch.last))};
+  DrivenStretch driven{{}, {}, Odometry(options.odometry, first_velocity ? *first_velocity : velocity_at_start(source, stretch))};
   for (std::size_t i = stretch.begin; i < stretch.last; ++i) {
     const auto begin = Clock::now();
     const Scan scan = source.read(i);
-    DrivenScan here{facts_of(scan), driven.odometry.step(reducer.reduce(scan.points))};
+    SurfelCloud surfels = reducer.reduce(scan.points);
+    DrivenScan here{facts_of(scan), driven.odometry.step(surfels, scan.stamp_s)};
     here.mapped.step_s = std::chrono::duration<double>(Clock::now() - begin).count();
     (i < stretch.first ? driven.shared : driven.own).push_back(here);
   }

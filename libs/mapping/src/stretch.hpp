@@ -32,8 +32,8 @@ struct DrivenStretch {
   Odometry odometry;   ///< as it stands after the last scan
 };
 
-/// @param first_motion  T_previous_sensor at its first scan; none: it is looked for
-DrivenStretch drive(const Stretch& stretch, const ScanSource& source, const JointMethodOptions& options, const std::optional<Eigen::Isometry3d>& first_motion);
+/// @param first_velocity  rad/s, m/s in sensor axes, at its first scan; none: it is looked for
+DrivenStretch drive(const Stretch& stretch, const ScanSource& source, const JointMethodOptions& options, const std::optional<Vector6d>& first_velocity);
 
 /// How the frame of a stretch lies in that of the stretches before it, from the last scans that both drove. None where they do not agree, as where either was lost: then the stretch
 /// has to be driven from where the last one ended.

@@ -24,11 +24,12 @@ Eigen::Vector3f centre_of(std::uint64_t key) {
   return {axis(42), axis(21), axis(0)};
 }
 
-Surfel surfel_of(const float* sums, const Eigen::Vector3f& centre) {
+Surfel surfel_of(const float* sums, const Eigen::Vector3f& centre, bool timed) {
   const float per_point = 1.0f / sums[3];
   const Eigen::Vector3f mean = per_point * Eigen::Vector3f(sums[0], sums[1], sums[2]);
   Surfel s;
   s.count = sums[3];
+  if (timed) s.time_s = sums[10] * per_point;
   s.mean = centre + mean;
   s.covariance << sums[4] * per_point - mean.x() * mean.x(), sums[5] * per_point - mean.x() * mean.y(),
       sums[6] * per_point - mean.x() * mean.z(), sums[7] * per_point - mean.y() * mean.y(), sums[8] * per_point - mean.y() * mean.z(),
@@ -77,13 +78,14 @@ ScanReducer::Cell& ScanReducer::add_cell(std::uint64_t key, std::size_t slot) {
 }
 
 /// Adds `count` points; the float after the last one must be readable.
-void ScanReducer::add(const float* xyz, std::size_t count) {
+template <bool timed>
+void ScanReducer::add(const float* xyz, const float* time_s, std::size_t count) {
   constexpr auto limit = float(half_range);
   const float per_metre = 1.0f / voxel_m_;
   const vfloat4 ones = {1.0f, 1.0f, 1.0f, 1.0f};
   vint4 last = vint4{} + half_range;  // no point's voxel
   Cell* cell = nullptr;
-  for (const float* const end = xyz + 3 * count; xyz != end; xyz += 3) {
+  for (const float* const end = xyz + 3 * count; xyz != end; xyz += 3, time_s += timed) {
     const vfloat4 p = *reinterpret_cast<const vfloat4*>(xyz);
     const vfloat4 v = p * per_metre;
     const vint4 inside = (v > -limit) & (v < limit);  // false when not a number
@@ -100,22 +102,26 @@ void ScanReducer::add(const float* xyz, std::size_t count) {
     vfloat4* const sums = reinterpret_cast<vfloat4*>(cell->sums);
     sums[0] += with_one;
     sums[1] += __builtin_shufflevector(r, r, 0, 0, 0, 1) * __builtin_shufflevector(r, r, 0, 1, 2, 1);
-    sums[2] += __builtin_shufflevector(r, r, 1, 2, 2, 2) * __builtin_shufflevector(r, r, 2, 2, 2, 2);
+    vfloat4 third = __builtin_shufflevector(r, ones, 1, 2, 4, 4) * __builtin_shufflevector(r, ones, 2, 2, 4, 4);
+    if constexpr (timed) third[2] = *time_s;
+    sums[2] += third;
   }
 }
 
 SurfelCloud ScanReducer::reduce(const PointCloud& scan) {
   clear();
   static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
+  const bool timed = !scan.empty() && scan.time_s.size() == scan.size();
   if (!scan.empty()) {
-    add(scan.xyz.data()->data(), scan.size() - 1);
+    const auto add_points = timed ? &ScanReducer::add<true> : &ScanReducer::add<false>;
+    (this->*add_points)(scan.xyz.data()->data(), scan.time_s.data(), scan.size() - 1);
     const Eigen::Vector4f last(scan.xyz.back().x(), scan.xyz.back().y(), scan.xyz.back().z(), 0.0f);
-    add(last.data(), 1);
+    (this->*add_points)(last.data(), timed ? &scan.time_s.back() : nullptr, 1);
   }
   SurfelCloud out;
   out.origin = scan.origin;
   out.surfels.reserve(used_.size());
-  for (const std::uint32_t slot : used_) out.surfels.push_back(surfel_of(table_[slot].sums, voxel_m_ * centre_of(table_[slot].key)));
+  for (const std::uint32_t slot : used_) out.surfels.push_back(surfel_of(table_[slot].sums, voxel_m_ * centre_of(table_[slot].key), timed));
   return out;
 }
 

@@ -10,6 +10,7 @@ void merge(Surfel& into, const Surfel& from) {
   spread << d.x() * d.x(), d.x() * d.y(), d.x() * d.z(), d.y() * d.y(), d.y() * d.z(), d.z() * d.z();
   into.covariance += share * (from.covariance - into.covariance) + both * spread;
   into.mean += share * d;
+  into.time_s += share * (from.time_s - into.time_s);
   into.count = total;
 }
 

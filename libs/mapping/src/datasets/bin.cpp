@@ -17,9 +17,9 @@ std::unique_ptr<ScanSource> open(const fs::path& path, const DatasetOptions& opt
   auto files = files_ending(scans, ".bin");
   const fs::path folder = fs::is_directory(scans) ? scans : fs::path();
   auto stamps = folder.empty() ? read_stamps({}, files.size()) : read_stamps({folder / "times.txt", folder / ".." / "times.txt"}, files.size());
-  const fs::path point_times = point_times_folder(scans, options.point_times);
-  ScanSourceInfo info{"bin", stamps.origin, point_times.empty() ? "none" : "point_times", 0};
-  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), point_times,
+  PointTimes point_times(options.point_times, scans, stamps.stamps_s, PointTimes::Otherwise::none);
+  ScanSourceInfo info{"bin", stamps.origin, {}, 0};
+  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), std::move(point_times),
                                      [](const fs::path& file) { return read_float_records(file, 4); });
 }
 

@@ -28,9 +28,9 @@ std::unique_ptr<ScanSource> open(const fs::path& path, const DatasetOptions& opt
   auto files = files_ending(path, ending_of(path));
   const fs::path folder = fs::is_directory(path) ? path : fs::path();
   auto stamps = folder.empty() ? read_stamps({}, files.size()) : read_stamps({folder / "times.txt", folder / ".." / "times.txt"}, files.size());
-  const fs::path point_times = point_times_folder(path, options.point_times);
-  ScanSourceInfo info{"clouds", stamps.origin, point_times.empty() ? "field of the points, where they have one" : "point_times", 0};
-  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), point_times, decode);
+  PointTimes point_times(options.point_times, path, stamps.stamps_s, PointTimes::Otherwise::fields);
+  ScanSourceInfo info{"clouds", stamps.origin, {}, 0};
+  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), std::move(point_times), decode);
 }
 
 }  // namespace

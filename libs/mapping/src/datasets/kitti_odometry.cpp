@@ -25,11 +25,11 @@ std::unique_ptr<ScanSource> open(const fs::path& path, const DatasetOptions& opt
   const fs::path scans = bin_folder(path);
   auto files = files_ending(scans, ".bin");
   auto stamps = read_stamps({scans / "times.txt", scans / ".." / "times.txt"}, files.size());
-  const fs::path point_times = point_times_folder(scans, options.point_times);
+  PointTimes point_times(options.point_times, scans, stamps.stamps_s, PointTimes::Otherwise::none);
   const double correction_deg = options.vertical_angle_correction_deg.value_or(default_correction_deg);
   const double correction_rad = correction_deg * std::numbers::pi / 180;
-  ScanSourceInfo info{"kitti-odometry", stamps.origin, point_times.empty() ? "none" : "point_times", correction_deg};
-  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), point_times, [correction_rad](const fs::path& file) {
+  ScanSourceInfo info{"kitti-odometry", stamps.origin, {}, correction_deg};
+  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), std::move(point_times), [correction_rad](const fs::path& file) {
     PointCloud cloud = read_float_records(file, 4);
     raise_vertical_angles(cloud, correction_rad);
     return cloud;

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
-#include <numbers>
 
 #include <priormap/core/error.hpp>
 
@@ -16,8 +15,6 @@ namespace priormap {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double period_s = 0.1;
 
 /// velodyne_points/, whether the drive or that folder itself is named.
 fs::path velodyne_folder(const fs::path& path) { return fs::is_directory(path / "velodyne_points") ? path / "velodyne_points" : path; }
@@ -51,25 +48,14 @@ Stamps read_timestamps(const fs::path& file, std::size_t count) {
   return stamps;
 }
 
-void add_times_of_spin(PointCloud& cloud) {
-  cloud.time_s.resize(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i)
-    cloud.time_s[i] = static_cast<float>(-std::atan2(cloud.xyz[i].y(), cloud.xyz[i].x()) * (period_s / (2 * std::numbers::pi)));
-}
-
 std::unique_ptr<ScanSource> open(const fs::path& path, const DatasetOptions& options) {
   const fs::path folder = velodyne_folder(path);
   const fs::path scans = fs::is_directory(folder / "data") ? folder / "data" : folder;
   auto files = files_ending(scans, ".bin");
   auto stamps = read_timestamps(folder / "timestamps.txt", files.size());
-  const fs::path point_times = options.point_times.empty() ? fs::path() : point_times_folder(scans, options.point_times);
-  const bool spin = point_times.empty();
-  ScanSourceInfo info{"kitti-raw", stamps.origin, spin ? "spinning model" : "point_times", 0};
-  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), point_times, [spin](const fs::path& file) {
-    PointCloud cloud = read_float_records(file, 4);
-    if (spin) add_times_of_spin(cloud);
-    return cloud;
-  });
+  PointTimes point_times(options.point_times, scans, stamps.stamps_s, PointTimes::Otherwise::clockwise);
+  ScanSourceInfo info{"kitti-raw", stamps.origin, {}, 0};
+  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), std::move(point_times), [](const fs::path& file) { return read_float_records(file, 4); });
 }
 
 }  // namespace

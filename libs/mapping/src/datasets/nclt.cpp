@@ -55,9 +55,9 @@ std::unique_ptr<ScanSource> open(const fs::path& path, const DatasetOptions& opt
     if (!is_nclt_name(file)) throw FormatError(file, "is not named by its time in microseconds as NCLT's scans are");
     stamps_s.push_back(1e-6 * std::stod(file.stem().string()));
   }
-  const fs::path point_times = point_times_folder(scans, options.point_times);
-  ScanSourceInfo info{"nclt", "file names", point_times.empty() ? "none" : "point_times", 0};
-  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps_s), point_times, decode);
+  PointTimes point_times(options.point_times, scans, stamps_s, PointTimes::Otherwise::none);
+  ScanSourceInfo info{"nclt", "file names", {}, 0};
+  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps_s), std::move(point_times), decode);
 }
 
 }  // namespace

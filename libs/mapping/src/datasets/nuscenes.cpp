@@ -39,9 +39,9 @@ std::unique_ptr<ScanSource> open(const fs::path& path, const DatasetOptions& opt
     for (std::size_t i = 0; i < files.size(); ++i) stamps.stamps_s[i] = *stamp_of(files[i]);
     stamps.origin = "file names";
   }
-  const fs::path point_times = point_times_folder(path, options.point_times);
-  ScanSourceInfo info{"nuscenes", stamps.origin, point_times.empty() ? "none" : "point_times", 0};
-  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), point_times, decode);
+  PointTimes point_times(options.point_times, path, stamps.stamps_s, PointTimes::Otherwise::none);
+  ScanSourceInfo info{"nuscenes", stamps.origin, {}, 0};
+  return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), std::move(point_times), decode);
 }
 
 }  // namespace

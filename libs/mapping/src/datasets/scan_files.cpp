@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <numbers>
 
 #include <priormap/core/error.hpp>
 
@@ -25,6 +26,33 @@ std::vector<float> read_point_times(const fs::path& file, std::size_t count) {
   std::vector<float> times(count);
   std::memcpy(times.data(), bytes.data(), bytes.size());
   return times;
+}
+
+/// A head spins once from scan to scan.
+double period_of(const std::vector<double>& stamps_s) {
+  constexpr double usual_s = 0.1, longest_s = 0.5;
+  std::vector<double> periods;
+  for (std::size_t i = 1; i < stamps_s.size(); ++i) periods.push_back(stamps_s[i] - stamps_s[i - 1]);
+  if (periods.empty()) return usual_s;
+  std::nth_element(periods.begin(), periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2), periods.end());
+  const double period_s = periods[periods.size() / 2];
+  return period_s > 0 && period_s < longest_s ? period_s : usual_s;
+}
+
+/// A head that spins once in `period_s`, counted positive counter-clockwise, and looks forward at the stamp.
+void add_times_of_spin(PointCloud& cloud, double period_s) {
+  cloud.time_s.resize(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    cloud.time_s[i] = static_cast<float>(std::atan2(cloud.xyz[i].y(), cloud.xyz[i].x()) * (period_s / (2 * std::numbers::pi)));
+}
+
+void check_span(const std::vector<float>& times_s, const fs::path& file) {
+  constexpr float longest_s = 1;
+  if (times_s.empty()) return;
+  const auto [least, most] = std::minmax_element(times_s.begin(), times_s.end());
+  if (!(*most - *least <= longest_s) || !(std::abs(*least) <= 2 * longest_s))
+    throw FormatError(file, "the times of its points lie from " + std::to_string(*least) + " to " + std::to_string(*most) +
+                                " s from the stamp, longer than a sweep lasts: their unit is not known; leave them out with --point-times none, or give a folder of times");
 }
 
 bool is_measurement(const Eigen::Vector3f& p) { return p.allFinite() && p.squaredNorm() > min_range_m * min_range_m; }
@@ -53,16 +81,60 @@ bool by_number_then_name(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
-ScanFiles::ScanFiles(ScanSourceInfo info, std::vector<fs::path> files, std::vector<double> stamps_s, fs::path point_times, Decode decode)
-    : info_(std::move(info)), files_(std::move(files)), stamps_s_(std::move(stamps_s)), point_times_(std::move(point_times)), decode_(std::move(decode)) {}
+PointTimes::PointTimes(const std::string& asked, const fs::path& scans, const std::vector<double>& stamps_s, Otherwise otherwise) : period_s_(period_of(stamps_s)) {
+  if (asked == "none") {
+    kind_ = Kind::none;
+  } else if (asked == "clockwise" || asked == "counter-clockwise") {
+    kind_ = asked == "clockwise" ? Kind::clockwise : Kind::counter_clockwise;
+  } else if (!asked.empty()) {
+    if (!fs::is_directory(asked)) throw IoError(asked, "no such folder of point times (NAME.f32, one float32 a point); else --point-times is none, clockwise or counter-clockwise");
+    kind_ = Kind::folder;
+    folder_ = asked;
+  } else {
+    kind_ = otherwise == Otherwise::none ? Kind::none : otherwise == Otherwise::fields ? Kind::fields : Kind::clockwise;
+    const fs::path folder = fs::is_directory(scans) ? scans : scans.parent_path();
+    for (const auto& candidate : {folder / ".." / "point_times", folder / "point_times"})
+      if (fs::is_directory(candidate)) kind_ = Kind::folder, folder_ = candidate;
+  }
+}
+
+void PointTimes::give(PointCloud& scan, const fs::path& file) const {
+  switch (kind_) {
+    case Kind::none: scan.time_s.clear(); break;
+    case Kind::fields: check_span(scan.time_s, file); break;
+    case Kind::folder: {
+      const fs::path times = folder_ / file.stem().concat(".f32");
+      scan.time_s = read_point_times(times, scan.size());
+      check_span(scan.time_s, times);
+      break;
+    }
+    case Kind::clockwise: add_times_of_spin(scan, -period_s_); break;
+    case Kind::counter_clockwise: add_times_of_spin(scan, period_s_); break;
+  }
+}
+
+std::string PointTimes::origin() const {
+  switch (kind_) {
+    case Kind::none: return "none";
+    case Kind::fields: return "field of the points, where they have one";
+    case Kind::folder: return "point_times";
+    case Kind::clockwise: return "spinning model, clockwise";
+    case Kind::counter_clockwise: return "spinning model, counter-clockwise";
+  }
+  return {};
+}
+
+ScanFiles::ScanFiles(ScanSourceInfo info, std::vector<fs::path> files, std::vector<double> stamps_s, PointTimes point_times, Decode decode)
+    : info_(std::move(info)), files_(std::move(files)), stamps_s_(std::move(stamps_s)), point_times_(std::move(point_times)), decode_(std::move(decode)) {
+  info_.point_times = point_times_.origin();
+}
 
 Scan ScanFiles::read(std::size_t index) const {
   Scan scan;
   scan.index = index;
   scan.stamp_s = stamps_s_[index];
   scan.points = decode_(files_[index]);
-  if (!point_times_.empty())
-    scan.points.time_s = read_point_times(point_times_ / files_[index].stem().concat(".f32"), scan.points.size());
+  point_times_.give(scan.points, files_[index]);
   scan.num_skipped = drop_non_measurements(scan.points);
   return scan;
 }
@@ -106,17 +178,6 @@ Stamps read_stamps(const std::vector<fs::path>& candidates, std::size_t count) {
   Stamps assumed{std::vector<double>(count), "assumed 10 Hz"};
   for (std::size_t i = 0; i < count; ++i) assumed.stamps_s[i] = 0.1 * static_cast<double>(i);
   return assumed;
-}
-
-fs::path point_times_folder(const fs::path& scans, const fs::path& asked) {
-  if (!asked.empty()) {
-    if (!fs::is_directory(asked)) throw IoError(asked, "no such folder of point times (NAME.f32, one float32 a point)");
-    return asked;
-  }
-  const fs::path folder = fs::is_directory(scans) ? scans : scans.parent_path();
-  for (const auto& candidate : {folder / "point_times", folder / ".." / "point_times"})
-    if (fs::is_directory(candidate)) return candidate;
-  return {};
 }
 
 }  // namespace priormap

@@ -8,14 +8,35 @@
 
 namespace priormap {
 
+/// Where the times of a scan's points come from, in seconds from its stamp.
+class PointTimes {
+ public:
+  /// What a dataset's scans carry when the user says nothing and there is no folder of times.
+  enum class Otherwise { none, fields, clockwise };
+
+  /// @param asked  of DatasetOptions; empty: point_times/ in or beside the scans, if there
+  /// @throws IoError when the folder asked for is absent
+  PointTimes(const std::string& asked, const std::filesystem::path& scans, const std::vector<double>& stamps_s, Otherwise otherwise);
+
+  /// @throws FormatError, IoError naming the file of times, or the scan when its times span more than any sweep lasts
+  void give(PointCloud& scan, const std::filesystem::path& file) const;
+  /// For the run report.
+  std::string origin() const;
+
+ private:
+  enum class Kind { none, fields, folder, clockwise, counter_clockwise };
+  Kind kind_;
+  std::filesystem::path folder_;
+  double period_s_ = 0.1;   // of a spin
+};
+
 /// A recording of one file a scan, which every dataset here is.
 class ScanFiles : public ScanSource {
  public:
   using Decode = std::function<PointCloud(const std::filesystem::path& file)>;
 
-  /// @param stamps_s as many as files; @param point_times folder of NAME.f32, empty: none
-  ScanFiles(ScanSourceInfo info, std::vector<std::filesystem::path> files, std::vector<double> stamps_s, std::filesystem::path point_times,
-            Decode decode);
+  /// @param stamps_s as many as files
+  ScanFiles(ScanSourceInfo info, std::vector<std::filesystem::path> files, std::vector<double> stamps_s, PointTimes point_times, Decode decode);
 
   std::size_t size() const override { return files_.size(); }
   Scan read(std::size_t index) const override;
@@ -27,7 +48,7 @@ class ScanFiles : public ScanSource {
   ScanSourceInfo info_;
   std::vector<std::filesystem::path> files_;
   std::vector<double> stamps_s_;
-  std::filesystem::path point_times_;
+  PointTimes point_times_;
   Decode decode_;
 };
 
@@ -45,8 +66,5 @@ struct Stamps {
 /// Seconds, one a line (times.txt). The first candidate that exists counts; none: 10 Hz assumed.
 /// @throws FormatError when the number of lines is not `count`.
 Stamps read_stamps(const std::vector<std::filesystem::path>& candidates, std::size_t count);
-
-/// The folder of point times: the one asked for, else point_times/ in or beside the scans' folder; empty: none.
-std::filesystem::path point_times_folder(const std::filesystem::path& scans, const std::filesystem::path& asked);
 
 }  // namespace priormap

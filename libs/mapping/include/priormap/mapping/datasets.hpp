@@ -13,12 +13,12 @@ namespace priormap {
 
 struct DatasetOptions {
   std::string name;                                      ///< of a dataset; empty: recognised from the files
-  std::string point_times;
+  std::string point_times;                               ///< folder, "clockwise", "counter-clockwise" or "none"; empty: as found
   std::optional<double> vertical_angle_correction_deg;
 
   template <class Visitor>
   void describe(Visitor& visit) {
-    visit("point-times", point_times, {"folder of NAME.f32 with one float32 a point, seconds from the scan's stamp; default: point_times/ in or beside the scans, if there"});
+    visit("point-times", point_times, {"times of the points, by which the motion within a sweep is undone: folder of NAME.f32 (one float32 a point, seconds from the scan's stamp); clockwise or counter-clockwise: a spinning head that looks forward at the stamp; none: the scans are compensated. Default: point_times/ in or beside the scans, else what the points carry"});
     visit("vertical-angle-correction", vertical_angle_correction_deg,
           {"raise the vertical angles, only with --dataset kitti-odometry (default there: 0.205, the paper 0.375)", "deg", -10, 10});
   }

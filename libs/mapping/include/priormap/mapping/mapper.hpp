@@ -17,7 +17,8 @@ namespace priormap {
 /// Where the first scan was taken, roughly, and how far the sensor moves from one scan to the next there.
 struct FirstPose {
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();   ///< T_previous_sensor
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();   ///< T_previous_sensor,
+  double motion_s = 0.1;                                      ///< in that time
 };
 
 /// Reads a scan of the recording again, by its index.

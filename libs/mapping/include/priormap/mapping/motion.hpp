@@ -14,4 +14,7 @@ Eigen::Isometry3d predict(const Eigen::Isometry3d& T_map_before_last, const Eige
 /// for the traces of the lasers on the ground fit best where nothing has moved. Identity for a recording of one scan.
 Eigen::Isometry3d motion_at_start(const ScanSource& source, std::size_t first, std::size_t last);
 
+/// Seconds from the first scan to the second; 0.1 where the stamps do not say.
+double period_at_start(const ScanSource& source, std::size_t first, std::size_t last);
+
 }  // namespace priormap

@@ -24,7 +24,7 @@ class ScanSource {
 struct ScanSourceInfo {
   std::string dataset;           ///< its name in the list of datasets
   std::string stamps;            ///< where the stamps come from: "times.txt", "file names", "assumed 10 Hz"
-  std::string point_times;       ///< "field of the points", "point_times", "spinning model", "none"
+  std::string point_times;       ///< "field of the points", "point_times", "spinning model, clockwise", "none"
   double vertical_angle_correction_deg = 0;
 };
 

@@ -7,7 +7,7 @@
 namespace priormap {
 
 /// Reduces scans to one surfel a voxel: one pass over the points with a flat hash, mean and second moments at once. Every point counts, so the mean of a voxel is far
-/// better than one of its points. Surfels come in the order in which their voxels were first seen: the same points give the same bytes.
+/// better than one of its points; and so its time, where the points have one. Surfels come in the order in which their voxels were first seen: the same points give the same bytes.
 /// Points that are not finite or farther than 2^20 voxels from the origin are left out. Keeps its buffers from scan to scan: one reducer a thread.
 class ScanReducer {
  public:
@@ -18,12 +18,13 @@ class ScanReducer {
  private:
   /// One cache line: sums of the points of a voxel, relative to its centre.
   struct alignas(64) Cell {
-    float sums[12];  // x, y, z, count, xx, xy, xz, yy, yz, zz, two unused
+    float sums[12];  // x, y, z, count, xx, xy, xz, yy, yz, zz, time, unused
     std::uint64_t key;
   };
   Cell& cell_of(std::uint64_t key);
   Cell& add_cell(std::uint64_t key, std::size_t slot);
-  void add(const float* xyz, std::size_t count);
+  template <bool timed>
+  void add(const float* xyz, const float* time_s, std::size_t count);
   void clear();
 
   float voxel_m_;

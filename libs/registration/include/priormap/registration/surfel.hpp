@@ -8,6 +8,7 @@ namespace priormap {
 struct Surfel {
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();
   float count = 0;                                       ///< points behind the moments
+  float time_s = 0;                                      ///< mean of the times of the points, from the scan's stamp
   Eigen::Matrix<float, 6, 1> covariance = Eigen::Matrix<float, 6, 1>::Zero();  ///< of the points: xx, xy, xz, yy, yz, zz [m^2]
 };
 
