@@ -41,7 +41,7 @@ PointCloud thinned_in_map(Scan scan, const MappedScan& mapped, const MapOptions&
   PointCloud points;
   points.origin = mapped.T_map_sensor.translation();
   const Eigen::Matrix3f R = mapped.T_map_sensor.linear().cast<float>();
-  undo_motion(scan.points, mapped.velocity);
+  if (mapped.motion_undone) undo_motion(scan.points, mapped.velocity);
   const auto range2 = static_cast<float>(options.range_m * options.range_m);
   VoxelOccupancy occupied(options.voxel_m);
   const bool has_intensity = !scan.points.intensity.empty();

@@ -26,6 +26,7 @@ MappedScan facts_of(const Scan& scan) {
   mapped.stamp_s = scan.stamp_s;
   mapped.num_points = scan.points.size();
   mapped.num_skipped = scan.num_skipped;
+  mapped.motion_undone = !scan.points.time_s.empty();
   return mapped;
 }
 

@@ -19,7 +19,7 @@ namespace priormap {
 struct EstimatedPose {
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
   Matrix6d covariance = Matrix6d::Zero();
-  Vector6d velocity = Vector6d::Zero();   ///< rad/s, m/s in sensor axes; zero where the motion within a sweep is not undone
+  Vector6d velocity = Vector6d::Zero();   ///< rad/s, m/s in sensor axes
 };
 
 /// Scans [first, last) of a source, to be placed in stretches, `jobs` at once.

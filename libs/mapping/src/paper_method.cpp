@@ -61,6 +61,7 @@ Matrix6d information_a_point(const RegistrationResult& match, std::size_t num_po
 }
 
 void PaperMethod::place(const Scan& scan, MappedScan& mapped) {
+  mapped.motion_undone = false;   // the paper takes sweeps as they are
   const bool first = pose_of_scan_.empty();
   const PointCloud all = positions_of(scan.points);
   const PointCloud points = voxel_downsample_centroid(all, options_.downsample_m);

@@ -151,6 +151,7 @@ RunSummary summarise(const std::vector<MappedScan>& scans) {
   summary.num_weak = count(scans, Verdict::weak);
   summary.num_dead_reckoned = count(scans, Verdict::dead_reckoned);
   summary.num_outside_prior = count(scans, Verdict::outside_prior);
+  summary.num_motion_undone = static_cast<std::size_t>(std::count_if(scans.begin(), scans.end(), [](const MappedScan& s) { return s.motion_undone; }));
   summary.num_lost = count(scans, Verdict::lost);
   return summary;
 }

@@ -66,6 +66,7 @@ Json totals(const RunFacts& facts) {
   const RunSummary& s = facts.summary;
   return {{"scans", s.num_scans},
           {"length_m", rounded(s.length_m, 1e-3)},
+          {"motion_undone", s.num_motion_undone},
           {"map_points", s.num_map_points},
           {"verdicts",
            {{"anchored", s.num_anchored},

@@ -122,6 +122,27 @@ TEST(Datasets, KittiRawStampsCountNanosecondsAndPointsTakeTheSpinsTime) {
   EXPECT_NEAR(scan.points.time_s[2], 0.025, 1e-7);
 }
 
+TEST(Datasets, PointsCanBeGivenTheTimesOfASpinningHeadOrNone) {
+  const Folder folder;
+  for (const char* name : {"0.bin", "1.bin"}) write_raw(folder.path() / name, std::vector<float>{10, 0, 0, 0, 0, 10, 0, 0});
+  write_text(folder.path() / "times.txt", "0\n0.2\n");   // 5 Hz
+  const auto clockwise = open_scans(folder.path(), {"bin", "clockwise", {}});
+  EXPECT_NEAR(clockwise->read(1).points.time_s.at(1), -0.05, 1e-7) << "left of the way ahead: seen before it";
+  EXPECT_EQ(clockwise->info().point_times, "spinning model, clockwise");
+  EXPECT_NEAR(open_scans(folder.path(), {"bin", "counter-clockwise", {}})->read(0).points.time_s.at(1), 0.05, 1e-7);
+  EXPECT_TRUE(open_scans(folder.path(), {"bin", "", {}})->read(0).points.time_s.empty());
+  write_raw(folder.path() / "point_times" / "0.f32", std::vector<float>{-0.1f, 0.2f});
+  EXPECT_EQ(open_scans(folder.path(), {"bin", "", {}})->read(0).points.time_s.size(), 2u);
+  EXPECT_TRUE(open_scans(folder.path(), {"bin", "none", {}})->read(0).points.time_s.empty());
+}
+
+TEST(Datasets, TimesInAnUnknownUnitAreRefused) {
+  const Folder folder;
+  write_raw(folder.path() / "0.bin", std::vector<float>{10, 0, 0, 0, 0, 10, 0, 0});
+  write_raw(folder.path() / "point_times" / "0.f32", std::vector<float>{0, 99000});   // microseconds
+  EXPECT_THROW(open_scans(folder.path())->read(0), FormatError);
+}
+
 TEST(Datasets, NcltIsDecodedWithZUp) {
   const Folder folder;
   // x = 1 m, y = 2 m to the right, z = 3 m down in NCLT's body frame

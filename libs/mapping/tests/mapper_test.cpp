@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <numbers>
+
 #include <priormap/mapping/mapper.hpp>
 
 #include "town.hpp"
@@ -54,6 +57,37 @@ TEST_F(Street, TheDefaultPresetFindsItsWayWithinCentimetres) {
     EXPECT_EQ(scans[static_cast<std::size_t>(k)].verdict, Verdict::anchored) << k;
     EXPECT_GT(scans[static_cast<std::size_t>(k)].covariance(3, 3), 0) << k;
   }
+}
+
+/// What a spinning head sees that is driven on meanwhile: the time of a point follows from its azimuth.
+Scan swept_from(double length_m, double k, const std::function<Eigen::Isometry3d(double)>& truth) {
+  constexpr double period_s = 0.1;
+  Scan scan = scan_from(length_m, truth(k), static_cast<std::size_t>(k));
+  for (Eigen::Vector3f& p : scan.points.xyz) {
+    const double turn = -std::atan2(static_cast<double>(p.y()), static_cast<double>(p.x())) / (2 * std::numbers::pi);
+    scan.points.time_s.push_back(static_cast<float>(period_s * turn));
+    p = (truth(k + turn).inverse() * truth(k) * p.cast<double>()).cast<float>();
+  }
+  return scan;
+}
+
+TEST_F(Street, TheMotionWithinASweepIsUndone) {
+  const auto fast = [](double k) { return pose(1.8 * k, 0.5 * std::sin(0.3 * k), 1.7, 0.1 * std::sin(0.5 * k)); };
+  const auto scan = [&](std::size_t k) { return swept_from(length_m, static_cast<double>(k), fast); };
+  const auto greatest_error = [&](bool timed) {
+    Mapper mapper(MapperOptions::preset("default"), std::nullopt, {fast(0), fast(0).inverse() * fast(1)}, 1);
+    const auto read = [&](std::size_t k) {
+      Scan one = scan(k);
+      if (!timed) one.points.time_s.clear();
+      return one;
+    };
+    for (std::size_t k = 0; k < num_scans; ++k) mapper.step(read(k));
+    double greatest = 0;
+    for (const MappedScan& one : mapper.finish(read)) greatest = std::max(greatest, position_error(one, fast(static_cast<double>(one.index))));
+    return greatest;
+  };
+  EXPECT_LT(greatest_error(true), 0.1);
+  EXPECT_GT(greatest_error(false), 2 * greatest_error(true));
 }
 
 TEST_F(Street, TheDefaultPresetNeedsNoPriorForOdometry) {

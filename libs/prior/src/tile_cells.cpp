@@ -33,7 +33,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "lookup files are little-endian");
 
 constexpr char magic[8] = {'P', 'R', 'I', 'O', 'R', 'C', 'E', 'L'};
-constexpr std::uint32_t format_version = 1;
+constexpr std::uint32_t format_version = 3;
 
 struct PointRow {
   std::uint16_t x, y;   // lattice steps from the corner of the cell
@@ -141,6 +141,7 @@ TileCells::TileCells(const PriorStore& store, const TileEntry& tile, const CellG
       cell.xyz.push_back({float(double(x % grid.edge()) / 1000.0), float(double(y % grid.edge()) / 1000.0), block.xyz[k].z()});
       cell.normal.push_back(block.normal[k]);
       cell.sigma_m.push_back(block.sigma_m[k]);
+      cell.classification.push_back(block.classification[k]);
     }
   });
   end_columns_before(std::int64_t(rows));

@@ -116,7 +116,29 @@ TEST(PriorLookup, PatchesAreThoseOfTheCellsPoints) {
     }
     num_patches += patches.size();
   }
-  EXPECT_GT(num_patches, 3000u);
+  EXPECT_GT(num_patches, 1000u);
+}
+
+TEST(PriorLookup, RoofsAreLeftOutWallsAndGroundAreNot) {
+  PointCloud cell;
+  const auto add = [&](float z, const Eigen::Vector3f& normal, PointClass kind) {
+    for (int i = 0; i < 3; ++i) {
+      cell.xyz.push_back({0.1f + 0.3f * float(i), 0.5f, z});
+      cell.normal.push_back(normal);
+      cell.classification.push_back(std::uint8_t(kind));
+      cell.sigma_m.push_back(1);
+    }
+  };
+  add(0.5f, {0, 0, 1}, PointClass::ground);
+  add(1.5f, {0, 1, 0}, PointClass::building);
+  add(2.5f, {0, 0, 1}, PointClass::building);
+  add(3.5f, {0, 0.6f, 0.8f}, PointClass::building);
+  add(4.5f, {0, 0, 1}, PointClass::unclassified);
+  const PatchCloud patches = patches_of_cell(cell, {});
+  ASSERT_EQ(patches.size(), 3u);
+  EXPECT_NEAR(patches.patches[0].mean.z(), 0.5f, 1e-5f);
+  EXPECT_NEAR(patches.patches[1].mean.z(), 1.5f, 1e-5f);
+  EXPECT_NEAR(patches.patches[2].mean.z(), 4.5f, 1e-5f);
 }
 
 TEST(PriorLookup, PatchesAreInMetresWhateverTheUnit) {

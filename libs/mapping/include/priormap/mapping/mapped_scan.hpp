@@ -25,7 +25,8 @@ struct MappedScan {
   Eigen::Isometry3d T_map_online = Eigen::Isometry3d::Identity();    ///< as known when the scan came
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();    ///< final
   Matrix6d covariance = Matrix6d::Zero();   ///< of T_map_sensor; tangent [rotation, translation] in sensor axes, as in core/se3.hpp
-  Vector6d velocity = Vector6d::Zero();     ///< rad/s, m/s in sensor axes, by which the motion within the sweep is undone; zero: it is not
+  Vector6d velocity = Vector6d::Zero();     ///< rad/s, m/s in sensor axes
+  bool motion_undone = false;               ///< within the sweep, by that velocity and the times of the points
   Verdict verdict = Verdict::lost;
   bool standstill = false;          ///< no pose of its own: repeats the last one
   std::size_t num_points = 0;       ///< as read, without those that are no measurement

@@ -40,6 +40,7 @@ struct RunSummary {
   double length_m = 0;
   double mean_scan_ms = 0, median_scan_ms = 0, p95_scan_ms = 0;
   double total_s = 0;
+  std::size_t num_motion_undone = 0;   ///< scans whose sweep was straightened by the times of its points
   std::uint64_t num_map_points = 0;
   std::uint64_t peak_memory_bytes = 0;
   std::size_t num_anchored = 0, num_weak = 0, num_dead_reckoned = 0, num_outside_prior = 0, num_lost = 0;
