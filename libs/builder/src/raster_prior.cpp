@@ -330,7 +330,7 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
   std::vector<Bounds2> areas;
   double finest_cell = 0;
   for (const RasterInput& input : inputs) {
-    const RasterPoints points(input.file, input.crs.crs, prior, prior_options.spacing_m);
+    const RasterPoints points(input.file, input.crs.crs, prior, prior_options.spacing_m, raster_options.walls());
     areas.push_back(area_of(input, points, bbox, prior));
     warn_of_inaccuracy(input, points.operation(), events);
     if (sources.empty()) finest_cell = points.cell_size();
@@ -340,7 +340,7 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
 
   std::uint64_t num_points = 0;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const RasterPoints points(inputs[i].file, inputs[i].crs.crs, prior, prior_options.spacing_m);
+    const RasterPoints points(inputs[i].file, inputs[i].crs.crs, prior, prior_options.spacing_m, raster_options.walls());
     const TileSquares squares(areas[i], prior_options.tile_size_m, prior_options.spacing_or(points.cell_size()));
     const std::vector<Bounds2> later(areas.begin() + static_cast<std::ptrdiff_t>(i) + 1, areas.end());
     LasPoint common;

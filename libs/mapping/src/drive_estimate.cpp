@@ -94,6 +94,14 @@ class DriveGraph {
     return graph.marginals();
   }
 
+  /// Adds a variance in map axes that all poses share.
+  void add_common(const Eigen::Vector3d& variance, std::vector<Matrix6d>& covariances) const {
+    for (std::size_t k = 0; k < size(); ++k) {
+      const Eigen::Matrix3d R = poses_[k].linear();
+      covariances[k].bottomRightCorner<3, 3>() += R.transpose() * variance.asDiagonal() * R;
+    }
+  }
+
   /// All scans: those between keyframes ride along, corrected little by little.
   std::vector<EstimatedPose> all_poses(const std::vector<Matrix6d>& covariances) const {
     std::vector<EstimatedPose> poses(records_.size());
@@ -134,7 +142,7 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
   center_velocities(records);
   DriveGraph graph(records, how);
   PiecesOfPrior pieces(how.piece_m, how.range_m);
-  const PieceSigmas stated = {{how.wall_sigma_m, how.slope_sigma_m, how.ground_sigma_m}};
+  const PieceSigmas stated = {{how.building_sigma_m, how.wall_sigma_m, how.slope_sigma_m, how.ground_sigma_m}};
   PieceSigmas sigmas = stated;
   Marginals marginals;
   std::vector<double> weights;
@@ -150,6 +158,7 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
     marginals = graph.estimate(pieces, sigmas, weights);
     if (pass + 1 < how.passes) sigmas = pieces.estimated_sigmas(stated, sigmas, marginals.pieces, weights);
   }
+  graph.add_common(pieces.common_variance(sigmas, how.common_share), marginals.poses);
   return graph.all_poses(marginals.poses);
 }
 

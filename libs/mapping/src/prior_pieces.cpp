@@ -10,14 +10,15 @@ namespace {
 /// What lies flat above the sensor is no ground but a roof, and roofs are not heard: their heights and shapes in a prior are often guessed, and all to one side.
 std::optional<PieceKind> kind_of(const PlaneMatch& match, double sensor_z) {
   const double up = std::abs(match.normal.z());
-  if (up < 0.3) return PieceKind::wall;
+  if (up < 0.3) return match.feature == PointCloud::no_feature ? PieceKind::wall : PieceKind::building;
   if (match.p_map.z() > sensor_z) return std::nullopt;
   return up < 0.9 ? PieceKind::slope : PieceKind::ground;
 }
 
 PieceKey key_of(const PlaneMatch& match, PieceKind kind, double piece_m) {
+  if (kind == PieceKind::building) return {match.feature, 0, 0, kind};
   const auto cell = [&](double v) { return static_cast<int>(std::floor(v / piece_m)); };
-  return {cell(match.p_map.x()), cell(match.p_map.y()), kind};
+  return {PointCloud::no_feature, cell(match.p_map.x()), cell(match.p_map.y()), kind};
 }
 
 }  // namespace
@@ -79,7 +80,7 @@ PieceSigmas PiecesOfPrior::estimated_sigmas(const PieceSigmas& stated, const Pie
                                             const std::vector<double>& weights) const {
   constexpr double stated_counts = 10, least_m = 0.02, most_m = 3;
   PieceSigmas estimated;
-  for (const PieceKind kind : {PieceKind::wall, PieceKind::slope, PieceKind::ground}) {
+  for (const PieceKind kind : piece_kinds) {
     double squares = stated_counts * stated[kind] * stated[kind], redundancy = stated_counts;
     const double variance = used[kind] * used[kind];
     for (PieceId p = 0; p < pieces_.size(); ++p) {
@@ -90,6 +91,13 @@ PieceSigmas PiecesOfPrior::estimated_sigmas(const PieceSigmas& stated, const Pie
     estimated[kind] = std::clamp(std::sqrt(squares / redundancy), least_m, most_m);
   }
   return estimated;
+}
+
+Eigen::Vector3d PiecesOfPrior::common_variance(const PieceSigmas& sigmas, double common_share) const {
+  const auto count = [&](PieceKind kind) { return std::count_if(pieces_.begin(), pieces_.end(), [&](const Piece& piece) { return piece.kind == kind; }); };
+  const auto of = [&](PieceKind kind) { return count(kind) ? common_share * sigmas[kind] * sigmas[kind] : 0; };
+  const double level = of(count(PieceKind::building) ? PieceKind::building : PieceKind::wall);
+  return {level, level, of(PieceKind::ground)};
 }
 
 }  // namespace priormap

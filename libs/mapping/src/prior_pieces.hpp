@@ -10,17 +10,20 @@
 
 namespace priormap {
 
-enum class PieceKind { wall, slope, ground };
+enum class PieceKind { building, wall, slope, ground };   ///< building: walls of one feature; wall: of none
+
+constexpr std::array piece_kinds = {PieceKind::building, PieceKind::wall, PieceKind::slope, PieceKind::ground};
 
 /// One value for each kind.
 struct PieceSigmas {
-  std::array<double, 3> sigma_m;
+  std::array<double, piece_kinds.size()> sigma_m;
   double& operator[](PieceKind kind) { return sigma_m[static_cast<std::size_t>(kind)]; }
   double operator[](PieceKind kind) const { return sigma_m[static_cast<std::size_t>(kind)]; }
 };
 
-/// A piece of the prior whose position errors hang together: the surfaces of one kind in one cell of a horizontal grid.
+/// A piece of the prior whose position errors hang together: the walls of one feature, or the surfaces of one kind without a feature in one cell of a horizontal grid.
 struct PieceKey {
+  std::uint32_t feature = PointCloud::no_feature;
   int x = 0, y = 0;
   PieceKind kind = PieceKind::wall;
   auto operator<=>(const PieceKey&) const = default;
@@ -49,6 +52,9 @@ class PiecesOfPrior {
   /// What the offsets say about the sigmas of each kind. @param stated  beforehand, counted as ten pieces' worth; @param used  in the graph that gave offsets and covariances
   PieceSigmas estimated_sigmas(const PieceSigmas& stated, const PieceSigmas& used, const std::vector<Eigen::Matrix3d>& covariances,
                                const std::vector<double>& weights) const;
+  /// How sure the prior is as a whole: the errors of its pieces have a share of their variance in common, which no number of pieces averages out. In map axes; zero without pieces.
+  /// @param sigmas  of the kinds of pieces
+  Eigen::Vector3d common_variance(const PieceSigmas& sigmas, double common_share) const;
   std::size_t size() const { return pieces_.size(); }
 
  private:

@@ -38,6 +38,18 @@ TEST(PriorPieces, WhatStraysFromTheKnownOffsetIsAnOutlier) {
   EXPECT_NEAR(equations_of(match, T, {1, 0, 0}, narrow).H(3, 3), 100, 1e-3);
 }
 
+TEST(PriorPieces, TheWallsOfABuildingAreOnePieceThoseOfNoneOneACell) {
+  const auto pieces_of = [](std::uint32_t feature) {
+    PiecesOfPrior pieces(20, 70);
+    std::vector<PlaneMatch> walls;
+    for (const double x : {5.0, 15.0, 25.0, 45.0}) walls.push_back({{x, 8, 3}, {0, 1, 0}, 0.1, 1e-4, feature});
+    pieces.add(0, pose(10, 0, 0), walls, noise);
+    return pieces.size();
+  };
+  EXPECT_EQ(pieces_of(7), 1u);
+  EXPECT_EQ(pieces_of(PointCloud::no_feature), 3u);
+}
+
 /// Walls across x, one a cell, each seen where it really is; the prior has them shifted.
 class ShiftedWalls : public testing::Test {
  protected:
@@ -57,7 +69,7 @@ TEST_F(ShiftedWalls, OneShiftedHouseDoesNotMoveTheVehicle) {
   PoseGraph graph(PoseGraphOptions{.absolute_width = 0, .between_width = 0});
   graph.add_pose(pose(0, 0, 0));
   graph.add_absolute(0, pose(0, 0, 0), 1e-2 * Matrix6d::Identity());
-  pieces_.add_to(graph, {{0.3, 0.3, 0.1}});
+  pieces_.add_to(graph, {{0.3, 0.3, 0.3, 0.1}});
   graph.optimize();
   EXPECT_LT(std::abs(graph.pose(0).translation().x()), 0.1);
   EXPECT_NEAR(graph.pieces()[3].offset_m.x(), -3, 0.15);   // to be moved back
@@ -74,7 +86,7 @@ TEST_F(ShiftedWalls, TheSigmaOfTheWallsIsEstimatedFromTheirOffsets) {
     graph.add_pose(pose(x, 0, 0));
     graph.add_absolute(k, pose(x, 0, 0), 1e6 * Matrix6d::Identity());
   }
-  const PieceSigmas stated = {{0.3, 0.3, 0.1}};
+  const PieceSigmas stated = {{0.3, 0.3, 0.3, 0.1}};
   PieceSigmas sigmas = stated;
   pieces_.add_to(graph, sigmas);
   graph.optimize();

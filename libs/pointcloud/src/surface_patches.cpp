@@ -28,10 +28,10 @@ VoxelOrder by_voxel(const PointCloud& points, double voxel_m) {
 /// Sums of the points of one patch, relative to its first point.
 class PatchSums {
  public:
-  PatchSums(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) : first_(p), has_normal_(!normal.isZero(0)) {}
+  PatchSums(const Eigen::Vector3f& p, const Eigen::Vector3f& normal, std::uint32_t feature) : first_(p), has_normal_(!normal.isZero(0)), feature_(feature) {}
 
-  bool takes(const Eigen::Vector3f& p, const Eigen::Vector3f& normal) const {
-    if (has_normal_ == normal.isZero(0)) return false;
+  bool takes(const Eigen::Vector3f& p, const Eigen::Vector3f& normal, std::uint32_t feature) const {
+    if (has_normal_ == normal.isZero(0) || feature != feature_) return false;
     if (!has_normal_) return true;
     const Eigen::Vector3f own = normals_.normalized();
     return own.dot(normal) > least_cosine && std::abs(own.dot(p - first_ - sum_ / count_)) < greatest_offset_m;
@@ -53,12 +53,14 @@ class PatchSums {
     patch.covariance << c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2);
     patch.sigma_m = std::sqrt(variances_ / count_);
     patch.count = count_;
+    patch.feature = feature_;
     return patch;
   }
 
  private:
   Eigen::Vector3f first_;
   bool has_normal_;
+  std::uint32_t feature_;
   Eigen::Vector3f sum_ = Eigen::Vector3f::Zero(), normals_ = Eigen::Vector3f::Zero();
   Eigen::Matrix3f squares_ = Eigen::Matrix3f::Zero();
   float variances_ = 0, count_ = 0;
@@ -83,9 +85,10 @@ PatchCloud reduce_to_patches(const PointCloud& points, double voxel_m) {
   for (std::size_t k = 0; k < order.size(); ++k) {
     const auto& [voxel, i] = order[k];
     const Eigen::Vector3f normal = normal_of(points, i);
-    const auto takes = [&](const PatchSums& sums) { return sums.takes(points.xyz[i], normal); };
+    const std::uint32_t feature = points.feature.empty() ? PointCloud::no_feature : points.feature[i];
+    const auto takes = [&](const PatchSums& sums) { return sums.takes(points.xyz[i], normal, feature); };
     auto sums = std::find_if(in_voxel.begin(), in_voxel.end(), takes);
-    if (sums == in_voxel.end()) sums = in_voxel.insert(sums, PatchSums(points.xyz[i], normal));
+    if (sums == in_voxel.end()) sums = in_voxel.insert(sums, PatchSums(points.xyz[i], normal, feature));
     sums->add(points.xyz[i], normal, sigma_of(points, i));
     if (k + 1 < order.size() && order[k + 1].first == voxel) continue;
     for (const PatchSums& whole : in_voxel) reduced.patches.push_back(whole.patch());

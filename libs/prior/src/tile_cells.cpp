@@ -33,7 +33,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "lookup files are little-endian");
 
 constexpr char magic[8] = {'P', 'R', 'I', 'O', 'R', 'C', 'E', 'L'};
-constexpr std::uint32_t format_version = 3;
+constexpr std::uint32_t format_version = 4;
 
 struct PointRow {
   std::uint16_t x, y;   // lattice steps from the corner of the cell
@@ -47,8 +47,9 @@ struct PatchRow {
   float sigma_m;
   std::int16_t normal[3];   // 1/32767
   std::uint16_t count;
+  std::uint32_t feature;
 };
-static_assert(sizeof(PatchRow) == 48);
+static_assert(sizeof(PatchRow) == 52);
 
 constexpr std::size_t points_a_block = std::size_t(1) << 16;
 
@@ -86,6 +87,7 @@ void append_patches(std::vector<std::byte>& bytes, const PatchCloud& cloud) {
     row.sigma_m = patch.sigma_m;
     for (int a = 0; a < 3; ++a) row.normal[a] = std::int16_t(std::lround(32767.0f * patch.normal[a]));
     row.count = std::uint16_t(std::min(patch.count, 65535.0f));
+    row.feature = patch.feature;
     append(bytes, row);
   }
 }
@@ -97,6 +99,7 @@ SurfacePatch patch_from(const PatchRow& row) {
   patch.normal = Eigen::Vector3f(row.normal[0], row.normal[1], row.normal[2]).normalized();
   patch.sigma_m = row.sigma_m;
   patch.count = row.count;
+  patch.feature = row.feature;
   return patch;
 }
 
@@ -142,6 +145,7 @@ TileCells::TileCells(const PriorStore& store, const TileEntry& tile, const CellG
       cell.normal.push_back(block.normal[k]);
       cell.sigma_m.push_back(block.sigma_m[k]);
       cell.classification.push_back(block.classification[k]);
+      cell.feature.push_back(block.feature[k]);
     }
   });
   end_columns_before(std::int64_t(rows));

@@ -278,6 +278,24 @@ TEST(MergePriors, ARasterGivesWayToModelsAndIsRoofEvidenceInsideOutlines) {
   }
 }
 
+TEST(MergePriors, AWallOfARasterStaysWhereNobodyKnowsItBetter) {
+  const TestFolder folder;
+  write_houses(folder / "osm", source("osm", "osm"), {{"h", 10, 10, 10, 100, 6, "tag"}}, 16);
+  PriorWriter writer(folder / "dsm", test_manifest({source("dsm", "raster")}, 16), Overwrite::refuse);
+  PointCloud cloud;
+  for (const double x : {8.5, 30.0})   // beside the house's wall at x = 10, and alone
+    for (double y = 10.5; y < 20; y += 1)
+      for (double z = 100.5; z < 110; z += 1) append(cloud, {{x, y, z}, {-1, 0, 0}, PointClass::unclassified}, PointCloud::no_feature);
+  writer.add(cloud);
+  writer.finish(1);
+  const MergeReport report = merge({folder / "osm", folder / "dsm"}, folder / "merged");
+  const auto kept = points_of(folder / "merged", "dsm");
+  EXPECT_EQ(kept.size(), 100u);
+  EXPECT_TRUE(std::ranges::all_of(kept, [](const Eigen::Vector3d& p) { return p.x() == 30; }));
+  EXPECT_EQ(report.walls_known_better, 100u);
+  EXPECT_EQ(report.contradicted, 0u) << "a wall says nothing of a roof";
+}
+
 TEST(MergePriors, GuessedHeightsGiveWayToWhatASurfaceRasterSaw) {
   const TestFolder folder;
   const std::vector<House> houses = {

@@ -130,6 +130,7 @@ class TargetState {
       const auto at = [&](Column c) { return Eigen::Vector3d(columns_[c][i], columns_[std::size_t(c) + 1][i], columns_[std::size_t(c) + 2][i]); };
       PlaneMatch match{corner + at(x), at(normal_x), at(normal_x).dot(at(x) - at(mean_x)), 0};
       match.scan_variance_m2 = double(source.columns[9][i]) + source.spread(i, R.transpose() * match.normal);
+      match.feature = view_->feature(block_[i], entry_[i]);
       matches.push_back(match);
     }
     return matches;

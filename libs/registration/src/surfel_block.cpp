@@ -21,12 +21,12 @@ void SurfelMap::Block::merge(std::span<const Item> items, std::span<const std::u
   for (const std::uint32_t i : order) {
     const Item& item = items[i];
     const float count = item.surfel.count;
-    const auto same = [&](const Entry& entry) { return entry.voxel == item.voxel && belongs(entry, item, options); };
+    const auto same = [&](const Entry& entry) { return entry.voxel == item.voxel && entry.feature == item.feature && belongs(entry, item, options); };
     const auto in_voxel = entries_.begin() + begin_[item.voxel], after_voxel = entries_.begin() + begin_[item.voxel + 1];
     auto entry = std::find_if(in_voxel, after_voxel, same);
     if (entry == after_voxel) entry = std::find_if(entries_.begin() + std::ptrdiff_t(before), entries_.end(), same);
     if (entry == entries_.end()) {
-      entries_.push_back({item.surfel, count * item.normal, count * item.sigma_m * item.sigma_m, item.voxel, item.of_prior, true});
+      entries_.push_back({item.surfel, count * item.normal, count * item.sigma_m * item.sigma_m, item.voxel, item.of_prior, true, item.feature});
       continue;
     }
     if (entry->surfel.count >= float(options.max_count)) continue;

@@ -18,6 +18,7 @@ struct SurfelMap::Item {
   float sigma_m = 0;
   Surfel surfel;  // relative to the block's corner
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  std::uint32_t feature = PointCloud::no_feature;
 };
 
 /// 8 x 8 x 8 voxels. Surfels lie in the order of their voxels, and within a voxel in the order of their making.
@@ -31,6 +32,7 @@ class SurfelMap::Block {
   std::size_t size() const { return entries_.size(); }
   const Surfel& surfel(std::size_t i) const { return entries_[i].surfel; }
   const SurfelShape& shape(std::size_t i) const { return shapes_[i]; }
+  std::uint32_t feature(std::size_t i) const { return entries_[i].feature; }
   const std::uint16_t* begin() const { return begin_.data(); }  ///< surfels of voxel v: begin()[v] .. begin()[v + 1]
   const float* x() const { return x_.data(); }
   const float* y() const { return y_.data(); }
@@ -44,6 +46,7 @@ class SurfelMap::Block {
     std::uint16_t voxel = 0;
     bool of_prior = false;
     bool changed = true;
+    std::uint32_t feature = PointCloud::no_feature;
   };
 
   static bool belongs(const Entry& entry, const Item& item, const SurfelMapOptions& options);

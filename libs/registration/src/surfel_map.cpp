@@ -51,6 +51,7 @@ void SurfelMap::insert(const PointCloud& points) {
     item.of_prior = true;
     if (!points.normal.empty() && points.normal[i].squaredNorm() > 0.25f) item.normal = points.normal[i].normalized();
     if (!points.sigma_m.empty() && std::isfinite(points.sigma_m[i])) item.sigma_m = points.sigma_m[i];
+    if (!points.feature.empty()) item.feature = points.feature[i];
     items.push_back(item);
   }
   insert_items(items);
@@ -66,6 +67,7 @@ void SurfelMap::insert(const PatchCloud& patches) {
     item.of_prior = true;
     item.normal = patch.normal;
     item.sigma_m = patch.sigma_m;
+    item.feature = patch.feature;
     items.push_back(item);
   }
   insert_items(items);

@@ -108,6 +108,33 @@ std::vector<std::uint32_t> places_of_columns(const std::vector<float>& z, std::s
   return places;
 }
 
+/// Adds the points of the walls that a grid has.
+class WallBuilder {
+ public:
+  WallBuilder(const PointGrid& grid, const StepWalls& walls, const Bounds2& area, PointCloud& points) : grid_(grid), walls_(walls), area_(area), points_(points) {}
+
+  /// @param across  a unit vector in the plane, from neighbour `a` to `b`
+  void between(std::size_t a, std::size_t b, const Eigen::Vector2f& across) {
+    const double step = grid_.z[b] - grid_.z[a];
+    if (!(std::abs(step) > walls_.least_step)) return;
+    const double x = thousandths(0.5 * (grid_.x[a] + grid_.x[b])), y = thousandths(0.5 * (grid_.y[a] + grid_.y[b]));
+    if (x < thousandths(area_.min_x) || x >= thousandths(area_.max_x) || y < thousandths(area_.min_y) || y >= thousandths(area_.max_y)) return;
+    const Eigen::Vector2f outward = step < 0 ? across : Eigen::Vector2f(-across);
+    const auto count = static_cast<std::size_t>(std::max(1.0, std::round(std::abs(step) / walls_.rise)));
+    for (std::size_t i = 0; i < count; ++i) {
+      const double z = thousandths(grid_.z[a] + step * (static_cast<double>(i) + 0.5) / static_cast<double>(count));
+      points_.xyz.push_back(((Eigen::Vector3d(x, y, z) - 1000 * points_.origin) / 1000).cast<float>());
+      points_.normal.emplace_back(outward.x(), outward.y(), 0.0f);
+    }
+  }
+
+ private:
+  const PointGrid& grid_;
+  const StepWalls& walls_;
+  const Bounds2& area_;
+  PointCloud& points_;
+};
+
 }  // namespace
 
 void PointGrid::resize(std::size_t new_width, std::size_t new_height) {
@@ -142,6 +169,21 @@ void points_of_grid(PointGrid& grid, const Bounds2& area, PointCloud& points) {
         xyz[to] = {x[i], y[i], z[i]};
         normal[to] = {nx[i], ny[i], nz[i]};
       }
+}
+
+void walls_of_grid(const PointGrid& grid, const StepWalls& walls, const Bounds2& area, PointCloud& points) {
+  points.clear();
+  if (grid.width < 3 || grid.height < 3) return;
+  const auto origin = origin_of(grid);
+  if (!origin) return;
+  points.origin = *origin;
+  WallBuilder builder(grid, walls, area, points);
+  const Eigen::Vector2f along = grid.along.normalized().cast<float>(), down = grid.down.normalized().cast<float>();
+  for (std::size_t row = 1; row + 1 < grid.height; ++row)
+    for (std::size_t i = row * grid.width + 1; i + 1 < (row + 1) * grid.width; ++i) {
+      builder.between(i, i + 1, along);
+      builder.between(i, i + grid.width, down);
+    }
 }
 
 }  // namespace priormap

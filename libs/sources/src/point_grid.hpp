@@ -28,4 +28,15 @@ struct PointGrid {
 /// grid: the order in which tiles are sorted. Positions are rounded to 0.001 first.
 void points_of_grid(PointGrid& grid, const Bounds2& area, PointCloud& points);
 
+/// Walls at the steps of a grid: where the heights of two neighbours differ by more than `least_step`, a raster knows no more than that a surface rises somewhere between
+/// their centres.
+struct StepWalls {
+  double least_step;   ///< in the unit of z
+  double rise;         ///< from one point of a wall to the next above, in the unit of z
+};
+
+/// Replaces `points` by those of the walls inside of `area`: in the middle between two neighbours, with the normal from the higher to the lower. Each pair of neighbours counts
+/// in the grid that holds its first, in the row or column, as an inner point.
+void walls_of_grid(const PointGrid& grid, const StepWalls& walls, const Bounds2& area, PointCloud& points);
+
 }  // namespace priormap

@@ -69,11 +69,27 @@ std::optional<Bounds2> target_bounds(const RasterFacts& facts, double target_cel
   return Bounds2{known.min().x(), known.min().y(), known.max().x(), known.max().y()};
 }
 
+/// Walls of a raster whose cells are fine enough to tell where they stand. @param cell_size  in the unit of the target CRS
+std::optional<StepWalls> step_walls(const Crs& target, double cell_size, const std::optional<double>& least_wall_m) {
+  constexpr double coarsest_m = 2.5, greatest_rise_m = 1;
+  const double cell_m = cell_size * target.horizontal_unit_m(), unit_m = std::abs(target.vertical_unit_m());
+  if (!least_wall_m || cell_m > coarsest_m) return std::nullopt;
+  return StepWalls{std::max(*least_wall_m, cell_m) / unit_m, std::min(cell_m, greatest_rise_m) / unit_m};
+}
+
+void visit_points(PointGrid& grid, const std::optional<StepWalls>& walls, const Bounds2& area, PointCloud& points, const std::function<void(PointCloud&)>& visit) {
+  points_of_grid(grid, area, points);
+  if (!points.empty()) visit(points);
+  if (!walls) return;
+  walls_of_grid(grid, *walls, area, points);
+  if (!points.empty()) visit(points);
+}
+
 /// The raster's own cell centres.
 class CellSampling {
  public:
-  CellSampling(const std::filesystem::path& file, const Crs& source, const Crs& target)
-      : CellSampling(RasterFile(file), source, target) {}
+  CellSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<double>& least_wall_m)
+      : CellSampling(RasterFile(file), source, target, least_wall_m) {}
 
   const std::optional<Bounds2>& bounds() const { return bounds_; }
   const CoordinateOperation& operation() const { return transformer_.exact().operation(); }
@@ -88,13 +104,12 @@ class CellSampling {
     for_each_patch(window, [&](const CellWindow& patch, const CellWindow& part) {
       fill_grid(part);
       if (!is_identity()) transform_grid(patch);
-      points_of_grid(grid_, area, points_);
-      if (!points_.empty()) visit(points_);
+      visit_points(grid_, walls_, area, points_, visit);
     });
   }
 
  private:
-  CellSampling(RasterFile raster, const Crs& source, const Crs& target)
+  CellSampling(RasterFile raster, const Crs& source, const Crs& target, const std::optional<double>& least_wall_m)
       : raster_(std::move(raster)),
         transformer_(Transformer(source, target, area_of(raster_.facts(), source))),
         back_(transformer_.exact(), InterpolatedTransformer::Direction::inverse) {
@@ -105,6 +120,7 @@ class CellSampling {
     patch_width_ = most_cells(is_identity() ? stripe_width : patch_edge);
     patch_height_ = most_cells(is_identity() ? cloud_edge : patch_edge);
     bounds_ = target_bounds(facts, cell_size_, transformer_);
+    walls_ = step_walls(target, cell_size_, least_wall_m);
   }
 
   bool is_identity() const { return transformer_.exact().is_identity(); }
@@ -125,8 +141,8 @@ class CellSampling {
     Eigen::AlignedBox2d cells;
     for (const Eigen::Vector2d& corner : {Eigen::Vector2d(b.min_x, b.min_y), Eigen::Vector2d(b.max_x, b.min_y), Eigen::Vector2d(b.min_x, b.max_y), Eigen::Vector2d(b.max_x, b.max_y)})
       cells.extend(cell_from_world * corner);
-    // Interpolation and rounding may move a centre across the edge of the area.
-    constexpr double hair = 0.25;
+    // Interpolation and rounding may move a centre across the edge of the area; and the wall beside it stands half a cell on.
+    constexpr double hair = 0.75;
     const auto first = [&](double v, int size) { return static_cast<int>(std::clamp(std::ceil(v - 0.5 - hair), 0.0, static_cast<double>(size))); };
     const auto last = [&](double v, int size) { return static_cast<int>(std::clamp(std::floor(v - 0.5 + hair) + 1, 0.0, static_cast<double>(size))); };
     const int col = first(cells.min().x(), raster_.facts().width), row = first(cells.min().y(), raster_.facts().height);
@@ -190,6 +206,7 @@ class CellSampling {
   double cell_size_ = 0;
   int patch_width_ = 0, patch_height_ = 0;
   std::optional<Bounds2> bounds_;
+  std::optional<StepWalls> walls_;
   CellWindow held_;   ///< whose heights are these:
   std::vector<double> heights_;
   PointGrid grid_;
@@ -200,8 +217,8 @@ class CellSampling {
 /// Cells of a square lattice of the target CRS: node (i, j) at ((i + 0.5) s, (j + 0.5) s), so that none lies on the edge of a tile.
 class LatticeSampling {
  public:
-  LatticeSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, double spacing)
-      : raster_(HeightRaster::open(file, source, target)), transformer_(source, target, area_of(read_raster_facts(file), source)), spacing_(spacing) {
+  LatticeSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, double spacing, const std::optional<double>& least_wall_m)
+      : raster_(HeightRaster::open(file, source, target)), transformer_(source, target, area_of(read_raster_facts(file), source)), spacing_(spacing), walls_(step_walls(target, spacing, least_wall_m)) {
     cloud_nodes_ = static_cast<std::int64_t>(std::clamp(cloud_extent / spacing, 1.0, static_cast<double>(cloud_edge)));
     InterpolatedTransformer horizontal(Transformer(source.horizontal(), target.horizontal()));
     bounds_ = target_bounds(read_raster_facts(file), raster_.cell_size(), horizontal);
@@ -219,8 +236,7 @@ class LatticeSampling {
     for (std::int64_t j = first(std::max(area.min_y, known.min_y)); j < end_j; j += cloud_nodes_) {
       for (std::int64_t i = first(std::max(area.min_x, known.min_x)); i < end_i; i += cloud_nodes_) {
         fill_grid(i, j, std::min(cloud_nodes_, end_i - i), std::min(cloud_nodes_, end_j - j));
-        points_of_grid(grid_, area, points_);
-        if (!points_.empty()) visit(points_);
+        visit_points(grid_, walls_, area, points_, visit);
       }
     }
   }
@@ -243,6 +259,7 @@ class LatticeSampling {
   HeightRaster raster_;
   Transformer transformer_;
   double spacing_;
+  std::optional<StepWalls> walls_;
   std::int64_t cloud_nodes_ = cloud_edge;
   std::optional<Bounds2> bounds_;
   PointGrid grid_;
@@ -251,10 +268,10 @@ class LatticeSampling {
 
 using Sampling = std::variant<CellSampling, LatticeSampling>;
 
-Sampling make_sampling(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<double>& spacing) {
+Sampling make_sampling(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<double>& spacing, const std::optional<double>& least_wall_m) {
   try {
-    if (spacing) return LatticeSampling(file, source, target, *spacing);
-    return CellSampling(file, source, target);
+    if (spacing) return LatticeSampling(file, source, target, *spacing, least_wall_m);
+    return CellSampling(file, source, target, least_wall_m);
   } catch (const CrsError& error) {
     const std::string message = error.what();
     throw CrsError(message.starts_with(file.string()) ? message : file.string() + ": " + message);
@@ -267,8 +284,9 @@ struct RasterPoints::Impl {
   Sampling sampling;
 };
 
-RasterPoints::RasterPoints(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<double>& spacing)
-    : impl_(new Impl{make_sampling(file, source, target, spacing)}) {}
+RasterPoints::RasterPoints(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<double>& spacing,
+                           const std::optional<double>& least_wall_m)
+    : impl_(new Impl{make_sampling(file, source, target, spacing, least_wall_m)}) {}
 RasterPoints::RasterPoints(const RasterPoints& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
 RasterPoints& RasterPoints::operator=(const RasterPoints& other) { return *this = RasterPoints(other); }
 RasterPoints::RasterPoints(RasterPoints&&) noexcept = default;

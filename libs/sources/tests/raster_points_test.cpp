@@ -38,8 +38,9 @@ class RasterPointsTest : public testing::Test {
   }
 
   /// All points, read in squares; sorted by position.
-  std::vector<Point> read(const fs::path& file, const Crs& source, const Crs& target, const std::optional<double>& spacing = std::nullopt, double square = 1e4) {
-    RasterPoints raster(file, source, target, spacing);
+  std::vector<Point> read(const fs::path& file, const Crs& source, const Crs& target, const std::optional<double>& spacing = std::nullopt, double square = 1e4,
+                          const std::optional<double>& least_wall_m = std::nullopt) {
+    RasterPoints raster(file, source, target, spacing, least_wall_m);
     const Bounds2 bounds = raster.bounds().value();
     std::vector<Point> points;
     for (double y = std::floor(bounds.min_y); y <= bounds.max_y; y += square)
@@ -84,6 +85,46 @@ TEST_F(RasterPointsTest, the_normal_of_a_plane_is_the_planes_also_at_the_edge_an
 TEST_F(RasterPointsTest, flat_roofs_are_flat_up_to_their_edge) {
   const auto points = read(write({.value = [](double col, double) { return col >= 5 ? 10 : 0; }}), utm, utm);
   for (const Point& point : points) EXPECT_LT((point.normal - Eigen::Vector3f::UnitZ()).norm(), 1e-6) << point.p.transpose();
+}
+
+std::vector<Point> walls_of(std::vector<Point> points) {
+  std::erase_if(points, [](const Point& point) { return point.normal.z() != 0; });
+  return points;
+}
+
+double house(double col, double row) { return col >= 2 && col < 6 && row >= 3 && row < 6 ? 12 : 2; }   // 4 m by 3 m, 10 m high
+
+TEST_F(RasterPointsTest, a_house_gets_walls_halfway_between_the_cells_that_face_outwards) {
+  const auto walls = walls_of(read(write({.value = house}), utm, utm, std::nullopt, 1e4, 1.5));
+  ASSERT_EQ(walls.size(), 14u * 10u);
+  const Eigen::Vector3d middle(500004, 4999995.5, 7);
+  for (const Point& wall : walls) {
+    const Eigen::Vector3d outward = wall.p - middle;
+    EXPECT_NEAR(std::max(std::abs(outward.x()) / 2, std::abs(outward.y()) / 1.5), 1, 1e-6) << wall.p.transpose();
+    EXPECT_GT(wall.normal.cast<double>().dot(outward), 1.4);
+    EXPECT_NEAR(wall.normal.norm(), 1, 1e-6);
+    EXPECT_NEAR(std::abs(std::remainder(wall.p.z(), 1)), 0.5, 1e-6);
+    EXPECT_LT(std::abs(outward.z()), 5);
+  }
+}
+
+TEST_F(RasterPointsTest, low_steps_coarse_cells_and_bare_ground_have_no_walls) {
+  EXPECT_TRUE(walls_of(read(write({.value = house}), utm, utm)).empty());
+  EXPECT_TRUE(walls_of(read(write({.value = house}), utm, utm, std::nullopt, 1e4, 10.5)).empty());
+  EXPECT_TRUE(walls_of(read(write({.transform = {500000, 5, 0, 5000000, 0, -5}, .value = house}), utm, utm, std::nullopt, 1e4, 1.5)).empty());
+}
+
+TEST_F(RasterPointsTest, walls_do_not_depend_on_the_areas_in_which_they_are_read) {
+  const auto town = [](double col, double row) { return 5 * (std::fmod(col * 0.131, 1) > 0.5) + 4 * (std::fmod(row * 0.077, 1) > 0.4) + 0.01 * col; };
+  const fs::path file = write({.width = 300, .height = 250, .crs = "EPSG:25832", .value = town});
+  for (const char* target : {"EPSG:25832", "EPSG:25833"})
+    for (const std::optional<double>& spacing : {std::optional<double>(), std::optional(0.9)}) {
+      const auto whole = walls_of(read(file, Crs::parse("EPSG:25832"), Crs::parse(target), spacing, 1e4, 1.5));
+      const auto parts = walls_of(read(file, Crs::parse("EPSG:25832"), Crs::parse(target), spacing, 77, 1.5));
+      EXPECT_GT(whole.size(), 10000u);
+      ASSERT_EQ(parts.size(), whole.size()) << target;
+      for (std::size_t i = 0; i < whole.size(); ++i) ASSERT_LT((parts[i].p - whole[i].p).norm(), 4e-4);
+    }
 }
 
 TEST_F(RasterPointsTest, a_single_cell_has_no_normal) {

@@ -15,7 +15,7 @@ namespace {
 
 using namespace priormap;
 
-constexpr std::size_t head_size = 72, row_size = 80, patch_size = 48, point_size = 8;   // docs/file-formats.md
+constexpr std::size_t head_size = 72, row_size = 80, patch_size = 52, point_size = 8;   // docs/file-formats.md
 
 /// A prior of one point, whose only tile has four cells.
 class OneTile {
@@ -46,7 +46,7 @@ class OneTile {
     cloud.xyz = {{10, 20, 3}};
     cloud.normal = {{0, 0, 1}};
     cloud.sigma_m = {0.1f};
-    cloud.classification = {6};
+    cloud.classification = {2};
     cloud.source = {0};
     cloud.feature = {PointCloud::no_feature};
     writer.add(cloud);

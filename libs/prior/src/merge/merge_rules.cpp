@@ -14,6 +14,11 @@ namespace {
 
 bool is_roof(const PointRecord& p) { return p.normal[2] > 32767 / 2; }
 
+bool is_wall(const PointRecord& p) {
+  constexpr int level = 32767 * 3 / 10;
+  return std::abs(p.normal[2]) < level && (p.normal[0] != 0 || p.normal[1] != 0);
+}
+
 double sigma_m(const PointRecord& p) { return p.sigma_mm == PointRecord::unknown_sigma ? 0.0 : p.sigma_mm / 1000.0; }
 
 }  // namespace
@@ -22,11 +27,11 @@ double MergeRules::halo(const Parameters& parameters, const std::vector<int>& pr
   // A point is thinned by one of the level above, which stands only if none of the level above that thinned it, and so on.
   const std::set<int> levels(precedence_of_source.begin(), precedence_of_source.end());
   const double chain_m = parameters.min_distance_m * double(levels.empty() ? 0 : levels.size() - 1);
-  return (chain_m + evidence_radius_m) / parameters.horizontal_unit_m;
+  return (chain_m + std::max(evidence_radius_m, same_wall_m)) / parameters.horizontal_unit_m;
 }
 
 bool MergeRules::is_surface_raster(const PointRecord& p) const {
-  return facts_.source_is_raster[p.source] && p.classification != std::uint8_t(PointClass::ground);
+  return facts_.source_is_raster[p.source] && p.classification != std::uint8_t(PointClass::ground) && !is_wall(p);
 }
 
 bool MergeRules::is_guessed(const PointRecord& p) const {
@@ -35,6 +40,7 @@ bool MergeRules::is_guessed(const PointRecord& p) const {
 
 void MergeRules::apply(const Footprints::InTile& models, std::vector<PointRecord>& points) {
   if (!models.empty()) drop_rasters_under_models(models, points);
+  drop_walls_known_better(points);
   if (!parameters_.keep_guessed_roofs) drop_contradicted(points);
   if (parameters_.min_distance_m > 0) thin(points);
 }
@@ -57,6 +63,21 @@ void MergeRules::drop_rasters_under_models(const Footprints::InTile& models, std
   for (std::size_t i = 0; i < points.size(); ++i)
     doomed[i] = facts_.source_is_raster[points[i].source] && models.contains(points[i].x, points[i].y);
   under_models_ += erase(points, doomed);
+}
+
+void MergeRules::drop_walls_known_better(std::vector<PointRecord>& points) {
+  const auto of_raster = [&](const PointRecord& p) { return facts_.source_is_raster[p.source] && is_wall(p); };
+  if (std::ranges::none_of(points, of_raster)) return;
+  const double step_m = 0.001 * parameters_.horizontal_unit_m;
+  NeighbourGrid known(points.size(), std::int64_t(std::ceil(same_wall_m / step_m)), 0);
+  for (const PointRecord& p : points)
+    if (!facts_.source_is_raster[p.source] && is_wall(p)) known.insert(p);
+  Doomed doomed(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    doomed[i] = of_raster(points[i]) && known.any_around(points[i], [&](const PointRecord& wall) {
+      return std::hypot(points[i].x - wall.x, points[i].y - wall.y) * step_m < same_wall_m;
+    });
+  walls_known_better_ += erase(points, doomed);
 }
 
 void MergeRules::drop_contradicted(std::vector<PointRecord>& points) {

@@ -15,10 +15,15 @@ struct RasterPriorOptions {
   /// "terrain": bare ground, points are class ground. "surface": ground, roofs and trees that a raster alone cannot tell apart: unclassified.
   std::string kind = "surface";
   std::optional<double> sigma_m;
+  double least_wall_m = 1.5;
+
+  /// Bare ground has no walls.
+  std::optional<double> walls() const { return kind == "surface" && least_wall_m > 0 ? std::optional(least_wall_m) : std::nullopt; }
 
   template <class Visitor>
   void describe(Visitor& visit) {
     visit("sigma", sigma_m, {"standard deviation of a point; default: sqrt(s^2 + cell^2 / 12), s as the raster states (DTED) or 0.15", "m", 0.001, 65});
+    visit("least-wall", least_wall_m, {"neighbouring cells of a surface of up to 2.5 m that differ by more are parted by a wall; 0: no walls", "m", 0, 1000});
   }
   /// @throws UsageError for another kind
   void validate() const;

@@ -92,10 +92,12 @@ struct EstimateOptions {
   double motion_scale = 1;
   double range_m = 70;
   double piece_m = 20;
+  double building_sigma_m = 0.3;
   double wall_sigma_m = 0.3;
   double slope_sigma_m = 0.3;
   double ground_sigma_m = 0.1;
   double surface_sigma_m = 0.1;
+  double common_share = 0.05;
   double kernel_width = 3;
   int passes = 3;
   PoseGraphOptions graph{.absolute_width = 0, .between_width = 0};
@@ -106,9 +108,11 @@ struct EstimateOptions {
     visit("motion-scale", motion_scale, {"how much less sure the relative poses are than their matching says", "", 0.01, 100});
     visit("piece-range", range_m, {"the prior is compared up to this far from the sensor", "m", 1, 1000});
     visit("piece", piece_m, {"edge of the cells in which the errors of the prior are taken to be one", "m", 1, 1000});
-    visit("wall-sigma", wall_sigma_m, {"standard deviation of the offsets of the prior's walls to begin with; it is estimated", "m", 1e-3, 100});
+    visit("building-sigma", building_sigma_m, {"standard deviation of the offsets of the prior's buildings to begin with; it is estimated", "m", 1e-3, 100});
+    visit("wall-sigma", wall_sigma_m, {"the same of walls that belong to no building known", "m", 1e-3, 100});
     visit("slope-sigma", slope_sigma_m, {"the same of slopes, such as the edges of a surface model", "m", 1e-3, 100});
     visit("ground-sigma", ground_sigma_m, {"the same of level ground", "m", 1e-3, 100});
+    visit("common-share", common_share, {"share of the variance of the pieces' offsets that all have in common, as when a whole source is shifted; the poses are no surer than that", "", 0, 1});
     visit("surface-sigma", surface_sigma_m, {"roughness of the prior's surfaces against the real ones, within a piece", "m", 1e-3, 10});
     visit("piece-kernel-width", kernel_width, {"width of the Geman-McClure kernel within a piece, in standard deviations", "", 0.5, 100});
     visit("passes", passes, {"times that the drive is compared with the prior and estimated anew", "", 1, 10});

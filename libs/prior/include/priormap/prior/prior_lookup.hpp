@@ -24,7 +24,7 @@ inline constexpr double lookup_voxel_m = 1.0;
 /// What a lookup holds of a cell as patches: metres east, north and up from `patches.origin`, which is in the prior's CRS. Points without a normal get that of
 /// their neighbours in the cell. Roofs (level or sloping points of class building) are left out: they are seen from the street by chance only, and their heights are
 /// often guessed.
-/// @param points  in the prior's CRS, columns normal, sigma_m and classification where known
+/// @param points  in the prior's CRS, columns normal, sigma_m, classification and feature where known
 PatchCloud patches_of_cell(PointCloud points, const PriorUnits& units);
 
 /// A prior cut into small cells, ready for matching: the points of each cell reduced to patches, and their positions.

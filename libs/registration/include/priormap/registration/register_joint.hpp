@@ -78,6 +78,7 @@ struct PlaneMatch {
   Eigen::Vector3d normal;     ///< of the plane
   double residual_m = 0;      ///< of p_map from the plane
   double scan_variance_m2 = 0;   ///< of the residual, by the scan: its point noise, and its own spread along the normal
+  std::uint32_t feature = PointCloud::no_feature;   ///< of the plane
 };
 
 struct JointResult {

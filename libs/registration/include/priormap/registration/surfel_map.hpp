@@ -31,7 +31,7 @@ struct SurfelShape {
 
 /// A target of `register_joint`: surfels in voxels, in blocks of 8 x 8 x 8 voxels with a dense index each, positions as structure of arrays relative to the block's
 /// corner (float32 is exact to micrometres there, anywhere in a frame of 2^31 voxels).
-/// Points with normals (a prior) make one surfel for each plane in a voxel; points without, and scans, one surfel a voxel from the moments of all that fell in.
+/// Points with normals (a prior) make one surfel for each plane of a feature in a voxel; points without, and scans, one surfel a voxel from the moments of all that fell in.
 /// What it holds depends on what was inserted and in which order, on nothing else.
 class SurfelMap {
  public:

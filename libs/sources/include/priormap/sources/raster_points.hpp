@@ -21,10 +21,13 @@ class RasterPoints {
  public:
   /// @param source   of the raster, with a vertical part where its heights are known
   /// @param target   projected
+  /// @param least_wall_m  neighbouring cells whose heights differ by more are parted by a wall, one point a cell's edge and at most a metre, halfway between their centres;
+  ///                 none, or cells beyond 2.5 m: no walls
   /// @param spacing  edge of a square lattice of the target CRS on whose cells' centres heights are interpolated; none: the raster's own
   ///                 cell centres
   /// @throws IoError, FormatError, CrsError as HeightRaster
-  RasterPoints(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<double>& spacing = std::nullopt);
+  RasterPoints(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<double>& spacing = std::nullopt,
+               const std::optional<double>& least_wall_m = std::nullopt);
   RasterPoints(const RasterPoints& other);
   RasterPoints& operator=(const RasterPoints& other);
   RasterPoints(RasterPoints&&) noexcept;
