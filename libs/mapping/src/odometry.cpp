@@ -69,12 +69,14 @@ OdometryStep Odometry::matched(const SurfelCloud& scan, const Eigen::Isometry3d&
 /// The sweep is straightened by the motion so far, and once more where the match shows another.
 OdometryStep Odometry::matched_in_motion(SurfelCloud& scan, double duration_s) {
   constexpr double least_m = 0.01, range_m = 30;
+  const double longest_s = longest_time_s(scan);
+  if (longest_s == 0) return matched(scan, better_guess(scan, duration_s));
   const SurfelCloud raw = scan;
   undo_motion(scan, velocity_);
-  OdometryStep found = matched(scan, better_guess(scan, duration_s));
+  const OdometryStep found = matched(scan, better_guess(scan, duration_s));
   if (!found.joined) return found;
   const Vector6d velocity = steady_velocity(T_odom_last_, found.T_odom_sensor, duration_s), change = velocity - velocity_;
-  if (longest_time_s(raw) * (change.tail<3>().norm() + range_m * change.head<3>().norm()) < least_m) return found;
+  if (longest_s * (change.tail<3>().norm() + range_m * change.head<3>().norm()) < least_m) return found;
   scan = raw;
   undo_motion(scan, velocity);
   return matched(scan, found.T_odom_sensor);

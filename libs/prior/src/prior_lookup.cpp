@@ -70,13 +70,13 @@ class TileCache {
 namespace {
 
 /// Low roofs of guessed heights would pass for ground.
-PointCloud without_roofs(const PointCloud& points) {
+void leave_out_roofs(PointCloud& points) {
   constexpr float level = 0.3f;
-  if (points.classification.empty() || points.normal.empty()) return points;
+  if (points.classification.empty()) return;
   std::vector<std::uint32_t> kept;
   for (std::uint32_t i = 0; i < points.size(); ++i)
     if (points.classification[i] != static_cast<std::uint8_t>(PointClass::building) || std::abs(points.normal[i].z()) < level) kept.push_back(i);
-  return kept.size() == points.size() ? points : points.select(kept);
+  if (kept.size() < points.size()) points = points.select(kept);
 }
 
 }  // namespace
@@ -85,7 +85,8 @@ PatchCloud patches_of_cell(PointCloud points, const PriorUnits& units) {
   const Eigen::Vector3f metres = Eigen::Vector3d(units.horizontal_m, units.horizontal_m, units.vertical_m).cast<float>();
   for (Eigen::Vector3f& p : points.xyz) p = p.cwiseProduct(metres).eval();
   estimate_normals(points);
-  return reduce_to_patches(without_roofs(points), lookup_voxel_m);
+  leave_out_roofs(points);
+  return reduce_to_patches(points, lookup_voxel_m);
 }
 
 PriorUnits units_of(const PriorManifest& manifest) {
