@@ -36,7 +36,8 @@ class RasterPoints {
 
   /// Calls visit(points) with the points inside of `area` (half-open, in the target CRS, whole thousandths): positions and normals, each
   /// cloud within a few km of its origin, which lies at whole units. Where the axes of raster and target are parallel and the area is at most 512 cells wide
-  /// and high, they come sorted by x, then y, from cloud to cloud too. Neighbouring areas are best read row by row.
+  /// and high, they come sorted by x, then y, from cloud to cloud too, but for the walls: those come after the cells beside them, in clouds of their
+  /// own. Neighbouring areas are best read row by row.
   void read(const Bounds2& area, const std::function<void(PointCloud& points)>& visit);
   /// A rectangle of the target CRS with all points; nothing where the raster reaches beyond the domain of the CRS.
   const std::optional<Bounds2>& bounds() const;
