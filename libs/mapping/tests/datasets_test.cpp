@@ -143,6 +143,27 @@ TEST(Datasets, TimesInAnUnknownUnitAreRefused) {
   EXPECT_THROW(open_scans(folder.path())->read(0), FormatError);
 }
 
+TEST(Datasets, PointsWithoutATimeAreLeftOutWhereOthersHaveOne) {
+  const Folder folder;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  write_raw(folder.path() / "0.bin", std::vector<float>{1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 9, 0});
+  write_raw(folder.path() / "point_times" / "0.f32", std::vector<float>{nan, 0.1f, nan});
+  const Scan scan = open_scans(folder.path())->read(0);
+  EXPECT_EQ(scan.num_skipped, 2u);
+  EXPECT_EQ(scan.points.time_s, (std::vector<float>{0.1f}));
+}
+
+TEST(Datasets, MissingReturnsCarryAnyTime) {
+  const Folder folder;
+  const std::string head = "VERSION 0.7\nFIELDS x y z timestamp\nSIZE 4 4 4 8\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 4\nHEIGHT 1\nPOINTS 4\nDATA ascii\n";
+  for (const char* missing : {"nan nan nan 0\n", "0 0 0 0\n", "nan nan nan nan\n"}) {
+    write_text(folder.path() / "0.pcd", head + missing + "10 0 0 1700000000.5\n0 10 0 1700000000.25\n" + missing);
+    const Scan scan = open_scans(folder.path())->read(0);
+    EXPECT_EQ(scan.num_skipped, 2u) << missing;
+    EXPECT_EQ(scan.points.time_s, (std::vector<float>{0.25f, 0})) << missing;
+  }
+}
+
 TEST(Datasets, NcltIsDecodedWithZUp) {
   const Folder folder;
   // x = 1 m, y = 2 m to the right, z = 3 m down in NCLT's body frame

@@ -57,14 +57,15 @@ void check_span(const std::vector<float>& times_s, const fs::path& file) {
 
 bool is_measurement(const Eigen::Vector3f& p) { return p.allFinite() && p.squaredNorm() > min_range_m * min_range_m; }
 
+/// Points that are no return, or of which nobody knows when within the sweep they were seen.
 std::size_t drop_non_measurements(PointCloud& cloud) {
-  if (std::all_of(cloud.xyz.begin(), cloud.xyz.end(), is_measurement)) return 0;
+  const bool timed = !cloud.time_s.empty();
   std::vector<std::uint32_t> kept;
   kept.reserve(cloud.size());
   for (std::uint32_t i = 0; i < cloud.size(); ++i)
-    if (is_measurement(cloud.xyz[i])) kept.push_back(i);
+    if (is_measurement(cloud.xyz[i]) && (!timed || std::isfinite(cloud.time_s[i]))) kept.push_back(i);
   const std::size_t dropped = cloud.size() - kept.size();
-  cloud = cloud.select(kept);
+  if (dropped) cloud = cloud.select(kept);
   return dropped;
 }
 
@@ -101,17 +102,14 @@ PointTimes::PointTimes(const std::string& asked, const fs::path& scans, const st
 void PointTimes::give(PointCloud& scan, const fs::path& file) const {
   switch (kind_) {
     case Kind::none: scan.time_s.clear(); break;
-    case Kind::fields: check_span(scan.time_s, file); break;
-    case Kind::folder: {
-      const fs::path times = folder_ / file.stem().concat(".f32");
-      scan.time_s = read_point_times(times, scan.size());
-      check_span(scan.time_s, times);
-      break;
-    }
+    case Kind::fields: break;
+    case Kind::folder: scan.time_s = read_point_times(file_of(file), scan.size()); break;
     case Kind::clockwise: add_times_of_spin(scan, -period_s_); break;
     case Kind::counter_clockwise: add_times_of_spin(scan, period_s_); break;
   }
 }
+
+fs::path PointTimes::file_of(const fs::path& scan) const { return kind_ == Kind::folder ? folder_ / scan.stem().concat(".f32") : scan; }
 
 std::string PointTimes::origin() const {
   switch (kind_) {
@@ -136,6 +134,7 @@ Scan ScanFiles::read(std::size_t index) const {
   scan.points = decode_(files_[index]);
   point_times_.give(scan.points, files_[index]);
   scan.num_skipped = drop_non_measurements(scan.points);
+  check_span(scan.points.time_s, point_times_.file_of(files_[index]));   // last: what is no return carries any time
   return scan;
 }
 

@@ -18,8 +18,10 @@ class PointTimes {
   /// @throws IoError when the folder asked for is absent
   PointTimes(const std::string& asked, const std::filesystem::path& scans, const std::vector<double>& stamps_s, Otherwise otherwise);
 
-  /// @throws FormatError, IoError naming the file of times, or the scan when its times span more than any sweep lasts
+  /// @throws FormatError, IoError naming the file of times
   void give(PointCloud& scan, const std::filesystem::path& file) const;
+  /// That holds the times of a scan's points: the scan itself, or its file in the folder of times.
+  std::filesystem::path file_of(const std::filesystem::path& scan) const;
   /// For the run report.
   std::string origin() const;
 
@@ -39,6 +41,7 @@ class ScanFiles : public ScanSource {
   ScanFiles(ScanSourceInfo info, std::vector<std::filesystem::path> files, std::vector<double> stamps_s, PointTimes point_times, Decode decode);
 
   std::size_t size() const override { return files_.size(); }
+  /// Without the points that are no measurement. @throws IoError, FormatError, also where the times of the rest span more than any sweep lasts
   Scan read(std::size_t index) const override;
   double stamp_s(std::size_t index) const override { return stamps_s_[index]; }
   std::filesystem::path file(std::size_t index) const override { return files_[index]; }

@@ -100,9 +100,11 @@ void read_times(const Columns& columns, std::size_t count, PointCloud& points) {
   const NamedColumn* column = find(columns, {"time_s", "time", "t", "timestamp", "offset_time"});
   if (!column) return;
   const double unit_s = column->type >= ScalarType::float32 ? 1 : 1e-9;
-  double earliest = std::numeric_limits<double>::infinity();
-  for_each_value(*column, count, [&](std::size_t, double v) { earliest = std::min(earliest, v); });
-  const double start = earliest * unit_s > largest_scan_time_s ? earliest : 0;
+  double earliest = std::numeric_limits<double>::infinity();   // of those that count from an epoch: missing returns carry a zero among them
+  for_each_value(*column, count, [&](std::size_t, double v) {
+    if (v * unit_s > largest_scan_time_s) earliest = std::min(earliest, v);
+  });
+  const double start = std::isfinite(earliest) ? earliest : 0;
   points.time_s.resize(count);
   for_each_value(*column, count, [&](std::size_t i, double v) { points.time_s[i] = static_cast<float>((v - start) * unit_s); });
 }
