@@ -1,5 +1,4 @@
 #include <cstdio>
-#include <filesystem>
 
 #include <priormap/cli/tool_app.hpp>
 #include <priormap/mapping/run_mapper.hpp>
@@ -46,10 +45,6 @@ int main(int argc, char** argv) {
     options.prior = prior;
     options.output = output;
     if (dataset != "auto") options.dataset.name = dataset;
-    if (options.resume && context.overwrite == priormap::Overwrite::refuse && std::filesystem::exists(options.output / "run.json")) {
-      context.events.inform(output + " is whole already: there is nothing to resume");
-      return;
-    }
-    print(priormap::run_mapper(options, context.threads, context.overwrite, context.events));
+    if (const auto summary = priormap::run_mapper(options, context.threads, context.overwrite, context.events)) print(*summary);
   });
 }

@@ -26,6 +26,11 @@ void PendingOutputs::add(const std::filesystem::path& path) {
   paths_.insert(path);
 }
 
+void PendingOutputs::forget(const std::filesystem::path& path) {
+  const std::lock_guard lock(mutex_);
+  paths_.erase(path);
+}
+
 void PendingOutputs::discard(const std::filesystem::path& path) {
   const std::lock_guard lock(mutex_);
   remove_tree(path);

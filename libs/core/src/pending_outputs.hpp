@@ -12,6 +12,8 @@ class PendingOutputs {
   static PendingOutputs& instance();
 
   void add(const std::filesystem::path& path);
+  /// Leaves the path where it is.
+  void forget(const std::filesystem::path& path);
   void discard(const std::filesystem::path& path);
   void discard_all();
   /// Runs `rename` while no interruption can remove the path, then forgets the path.

@@ -38,9 +38,9 @@ ResumableDirectory::Lock::Lock(const fs::path& folder, const fs::path& target) :
 }
 ResumableDirectory::Lock::~Lock() { ::close(descriptor_); }
 
-ResumableDirectory::ResumableDirectory(fs::path target, Overwrite overwrite, std::string marker_file, Begin begin)
+ResumableDirectory::ResumableDirectory(fs::path target, Overwrite overwrite, std::string marker_file)
     : output_(std::move(target), overwrite, std::move(marker_file), Workplace::own_folder), folder_(output_.temporary_path().parent_path()), lock_(folder_, output_.target()) {
-  remove_leftovers(begin == Begin::anew);
+  remove_leftovers();
   if (!fs::exists(folder_ / checkpoint_name)) PendingOutputs::instance().add(folder_);
 }
 
@@ -49,9 +49,11 @@ ResumableDirectory::~ResumableDirectory() {
   if (!fs::exists(folder_ / checkpoint_name, error)) PendingOutputs::instance().discard(folder_);
 }
 
-void ResumableDirectory::remove_leftovers(bool with_checkpoint) {
-  for (const auto& entry : fs::directory_iterator(folder_))
-    if (entry.path() != output_.temporary_path() && (with_checkpoint || entry.path().filename() != checkpoint_name)) fs::remove_all(entry.path());
+void ResumableDirectory::remove_leftovers() {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path() != output_.temporary_path() && entry->path().filename() != checkpoint_name) fs::remove_all(entry->path(), error);
+  if (error) throw IoError(folder_, "cannot be cleared: " + error.message());
 }
 
 std::optional<std::string> ResumableDirectory::checkpoint() const {
@@ -66,11 +68,19 @@ std::optional<std::string> ResumableDirectory::checkpoint() const {
 }
 
 void ResumableDirectory::keep(const std::string& checkpoint) {
-  const fs::path kept = folder_ / checkpoint_name, fresh = fs::path(kept).concat(".new");
-  OutputFile file(fresh);
+  AtomicFile kept(folder_ / checkpoint_name, Overwrite::allow);
+  OutputFile file(kept.temporary_path());
   file << magic << ' ' << digest_of(checkpoint) << '\n' << checkpoint;
   file.close();
-  PendingOutputs::instance().publish(folder_, [&] { fs::rename(fresh, kept); });
+  PendingOutputs::instance().forget(folder_);   // from here on it holds what outlives an interruption
+  kept.commit();
+}
+
+void ResumableDirectory::discard_checkpoint() {
+  std::error_code error;
+  fs::remove(folder_ / checkpoint_name, error);
+  if (error) throw IoError(folder_ / checkpoint_name, "cannot be removed: " + error.message());
+  PendingOutputs::instance().add(folder_);
 }
 
 void ResumableDirectory::commit() {

@@ -13,19 +13,18 @@ namespace priormap {
 namespace {
 
 namespace fs = std::filesystem;
-using Begin = ResumableDirectory::Begin;
 
 class ResumableOutputTest : public ::testing::Test {
  protected:
   void SetUp() override { fs::create_directories(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
 
-  ResumableDirectory begin(Begin how, Overwrite overwrite = Overwrite::refuse) const { return {folder_ / "out", overwrite, "marker", how}; }
+  ResumableDirectory begin() const { return {folder_ / "out", Overwrite::refuse, "marker"}; }
   /// A program that is killed after it kept `checkpoint`: a child, for nothing of it may run on.
   void interrupted_run(const std::string& checkpoint) const {
     const pid_t child = ::fork();
     if (child == 0) {
-      ResumableDirectory output = begin(Begin::anew);
+      ResumableDirectory output = begin();
       std::ofstream(output.temporary_path() / "half") << "half";
       output.keep("older");
       output.keep(checkpoint);
@@ -41,7 +40,7 @@ class ResumableOutputTest : public ::testing::Test {
 
 TEST_F(ResumableOutputTest, LeavesNothingButTheDirectory) {
   {
-    ResumableDirectory output = begin(Begin::anew);
+    ResumableDirectory output = begin();
     output.keep("state");
     std::ofstream(output.temporary_path() / "marker") << "whole";
     EXPECT_FALSE(fs::exists(folder_ / "out"));
@@ -52,14 +51,14 @@ TEST_F(ResumableOutputTest, LeavesNothingButTheDirectory) {
 }
 
 TEST_F(ResumableOutputTest, WithoutCheckpointNothingStays) {
-  { ResumableDirectory output = begin(Begin::anew); }
+  { ResumableDirectory output = begin(); }
   EXPECT_EQ(entries(), 0u);
 }
 
 TEST_F(ResumableOutputTest, GoesOnFromTheLastCheckpoint) {
   const std::string state("state\0\n\xff", 8);
   interrupted_run(state);
-  ResumableDirectory output = begin(Begin::where_it_stood);
+  ResumableDirectory output = begin();
   EXPECT_EQ(output.checkpoint(), state);
   EXPECT_TRUE(fs::is_empty(output.temporary_path()));
   output.commit();
@@ -68,10 +67,16 @@ TEST_F(ResumableOutputTest, GoesOnFromTheLastCheckpoint) {
 }
 
 TEST_F(ResumableOutputTest, ACheckpointOutlivesAFailure) {
-  { begin(Begin::anew).keep("state"); }
-  EXPECT_EQ(begin(Begin::where_it_stood).checkpoint(), "state");
-  EXPECT_EQ(begin(Begin::anew).checkpoint(), std::nullopt);
+  { begin().keep("state"); }
+  { ResumableDirectory fails_before_it_keeps_one = begin(); }
+  EXPECT_EQ(begin().checkpoint(), "state");
+  begin().discard_checkpoint();
   EXPECT_EQ(entries(), 0u);
+}
+
+TEST_F(ResumableOutputTest, WhatCannotBeKeptIsAnIoError) {
+  fs::create_directories(folder_ / ".out.unfinished/checkpoint/in the way");
+  EXPECT_THROW(begin().keep("state"), IoError);
 }
 
 TEST_F(ResumableOutputTest, ATornCheckpointIsNone) {
@@ -79,27 +84,27 @@ TEST_F(ResumableOutputTest, ATornCheckpointIsNone) {
   const fs::path file = folder_ / ".out.unfinished/checkpoint";
   const auto size = fs::file_size(file);
   fs::resize_file(file, size - 1);
-  EXPECT_EQ(begin(Begin::where_it_stood).checkpoint(), std::nullopt);
+  EXPECT_EQ(begin().checkpoint(), std::nullopt);
   std::fstream(file, std::ios::in | std::ios::out | std::ios::app) << 'x';
   EXPECT_EQ(fs::file_size(file), size);
-  EXPECT_EQ(begin(Begin::where_it_stood).checkpoint(), std::nullopt);
+  EXPECT_EQ(begin().checkpoint(), std::nullopt);
   fs::resize_file(file, 5);
-  EXPECT_EQ(begin(Begin::where_it_stood).checkpoint(), std::nullopt);
+  EXPECT_EQ(begin().checkpoint(), std::nullopt);
 }
 
 TEST_F(ResumableOutputTest, OneProgramAtATime) {
-  ResumableDirectory output = begin(Begin::anew);
+  ResumableDirectory output = begin();
   output.keep("state");
-  EXPECT_THROW(begin(Begin::anew), IoError);
+  EXPECT_THROW(begin(), IoError);
   EXPECT_EQ(output.checkpoint(), "state");
   EXPECT_TRUE(fs::exists(output.temporary_path()));
 }
 
 TEST_F(ResumableOutputTest, AnInterruptionBySignalKeepsTheCheckpointAlone) {
-  ResumableDirectory output = begin(Begin::anew);
+  ResumableDirectory output = begin();
   discard_pending_outputs();
   EXPECT_EQ(entries(), 0u);
-  ResumableDirectory again = begin(Begin::anew);
+  ResumableDirectory again = begin();
   again.keep("state");
   discard_pending_outputs();
   EXPECT_FALSE(fs::exists(again.temporary_path()));

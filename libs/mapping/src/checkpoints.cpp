@@ -4,10 +4,16 @@
 #include <utility>
 
 #include <priormap/core/error.hpp>
+#include <priormap/core/process.hpp>
 
 #include "run_inputs.hpp"
 
 namespace priormap {
+namespace {
+
+[[noreturn]] void refuse_other_build() { throw UsageError("--resume: the checkpoint is of another build of mapper; leave out --resume to begin anew"); }
+
+}  // namespace
 
 Checkpoints::Checkpoints(ResumableDirectory& output, std::string identity, double interval_s, const Events& events)
     : output_(output), identity_(std::move(identity)), events_(events), interval_(interval_s), enabled_(interval_s > 0), next_(Clock::now() + std::chrono::duration_cast<Clock::duration>(interval_)) {}
@@ -20,12 +26,18 @@ bool Checkpoints::restore(const Exchange& exchange) const {
   std::optional<std::string> kept = output_.checkpoint();
   if (!kept) return false;
   StateArchive archive(std::move(*kept));
-  std::string identity;
+  std::string build, identity;
+  archive(build);
+  if (build != build_id()) refuse_other_build();
   archive(identity);
   const std::string differs = difference(identity, identity_);
   if (!differs.empty()) throw UsageError("--resume: the run that was interrupted is another one: " + differs + "; leave out --resume to begin anew");
-  exchange(archive);
-  archive.expect_end();
+  try {
+    exchange(archive);
+    archive.expect_end();
+  } catch (const FormatError&) {   // where builds carry no ID, their states tell
+    refuse_other_build();
+  }
   return true;
 }
 
@@ -46,7 +58,8 @@ void Checkpoints::offer(const Exchange& exchange) {
   const Clock::time_point now = Clock::now();
   if (!enabled_ || now < next_ || !writer_is_free()) return;
   StateArchive archive;
-  archive(identity_);
+  std::string build = build_id();
+  archive(build, identity_);
   exchange(archive);
   writing_ = std::async(std::launch::async, [this, state = archive.take()] { output_.keep(state); });
   next_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::max<std::chrono::duration<double>>(interval_, (Clock::now() - now) / most_of_the_time));

@@ -21,7 +21,7 @@ class Checkpoints {
   Checkpoints(const Checkpoints&) = delete;
   Checkpoints& operator=(const Checkpoints&) = delete;
 
-  /// Takes the state from the last checkpoint. @return false: there is none. @throws UsageError when it is of a run with other inputs or options
+  /// Takes the state from the last checkpoint. @return false: there is none. @throws UsageError when it is of a run with other inputs or options, or of another build
   bool restore(const Exchange& exchange) const;
   /// Keeps the state if it is time. Where that fails, it warns and keeps no more.
   void offer(const Exchange& exchange);

@@ -1,8 +1,11 @@
 #include "run_inputs.hpp"
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 
+#include <priormap/core/error.hpp>
 #include <priormap/core/hash.hpp>
 #include <priormap/core/version.hpp>
 
@@ -28,19 +31,28 @@ Json described(Options options) {
   return object;
 }
 
-std::string name_of(const std::filesystem::path& path) { return (path.filename().empty() ? path.parent_path() : path).filename().string(); }
-
-}  // namespace
-
-Json configuration_of(const RunOptions& options, const MapperOptions& method) {
-  return {{"preset", options.preset},
-          {"start", options.start},
-          {"limit", options.limit},
-          {"stretches", options.jobs > 1 ? described(options.stretches) : Json()},
-          {"method", described(method)},
-          {"map", options.no_map ? Json() : described(options.map)},
-          {"initial_pose_from", !options.initial.lon_lat_deg.empty() ? "longitude and latitude" : !options.initial.pose.empty() ? "pose" : "origin"}};
+/// Of what a listing does not show: point times of another run of their maker have the same names and sizes.
+std::string first_scan_hash(const ScanSource& source, ScanRange range) {
+  Sha256 hash;
+  for (const auto& file : source.files(range.first)) hash.update(sha256_file(file));
+  return hash.hex_digest();
 }
+
+std::string stamps_hash(const ScanSource& source, ScanRange range) {
+  Sha256 hash;
+  for (std::size_t i = range.first; i < range.last; ++i) {
+    const double stamp_s = source.stamp_s(i);
+    hash.update(std::as_bytes(std::span(&stamp_s, 1)));
+  }
+  return hash.hex_digest();
+}
+
+Json identity(Json generator, Json inputs, Json configuration) {
+  for (const char* free : {"threads", "jobs"}) configuration.erase(free);   // on which no result depends
+  return {{"generator", std::move(generator)}, {"inputs", std::move(inputs)}, {"configuration", std::move(configuration)}};
+}
+
+std::string name_of(const std::filesystem::path& path) { return (path.filename().empty() ? path.parent_path() : path).filename().string(); }
 
 Json scans_input(const RunOptions& options, const ScanSource& source, ScanRange range) {
   const auto& info = source.info();
@@ -50,7 +62,9 @@ Json scans_input(const RunOptions& options, const ScanSource& source, ScanRange 
           {"stamps", info.stamps},
           {"point_times", info.point_times},
           {"vertical_angle_correction_deg", info.vertical_angle_correction_deg},
-          {"names_and_sizes_sha256", listing_hash(source, range)}};
+          {"names_and_sizes_sha256", listing_hash(source, range)},
+          {"first_scan_sha256", first_scan_hash(source, range)},
+          {"stamps_sha256", stamps_hash(source, range)}};
 }
 
 Json prior_input(const PriorPoints* prior) {
@@ -63,24 +77,52 @@ Json prior_input(const PriorPoints* prior) {
           {"attributions", identity.attributions}};
 }
 
+}  // namespace
+
+Json configuration_of(const RunOptions& options, const MapperOptions& method) {
+  return {{"preset", options.preset},
+          {"start", options.start},
+          {"limit", options.limit},
+          {"stretches", options.jobs > 1 ? described(options.stretches) : Json()},
+          {"method", described(method)},
+          {"map", options.no_map ? Json() : described(options.map)},
+          {"dataset", described(options.dataset)},
+          {"prior", described(options.prior_options)},
+          {"initial_pose", described(options.initial)},
+          {"initial_pose_from", !options.initial.lon_lat_deg.empty() ? "longitude and latitude" : !options.initial.pose.empty() ? "pose" : "origin"}};
+}
+
+std::string generator() { return "mapper " + std::string(version); }
+
+Json inputs_of(const RunOptions& options, const ScanSource& source, ScanRange range, const PriorPoints* prior) {
+  return {{"scans", scans_input(options, source, range)}, {"prior", prior_input(prior)}};
+}
+
 std::string listing_hash(const ScanSource& source, ScanRange range) {
   Sha256 hash;
   for (std::size_t i = range.first; i < range.last; ++i) {
-    const auto file = source.file(i);
-    hash.update(file.filename().string() + " " + std::to_string(std::filesystem::file_size(file)) + "\n");
+    for (const auto& file : source.files(i)) {
+      std::error_code error;
+      const auto size = std::filesystem::file_size(file, error);
+      if (error) throw IoError(file, "cannot be read: " + error.message());
+      hash.update(file.filename().string() + " " + std::to_string(size) + "\n");
+    }
   }
   return hash.hex_digest();
 }
 
 std::string identity_of(const RunOptions& options, const MapperOptions& method, const ScanSource& source, ScanRange range, const PriorPoints* prior) {
-  Json identity = {{"program", "mapper " + std::string(version)},
-                   {"scans", scans_input(options, source, range)},
-                   {"prior", prior_input(prior)},
-                   {"dataset options", described(options.dataset)},
-                   {"prior options", described(options.prior_options)},
-                   {"initial pose", described(options.initial)}};
-  identity.update(configuration_of(options, method));
-  return identity.dump();
+  return identity(generator(), inputs_of(options, source, range, prior), configuration_of(options, method)).dump();
+}
+
+std::string identity_in(const std::filesystem::path& run_json) {
+  std::ifstream file(run_json);
+  try {
+    const Json report = Json::parse(file);
+    return identity(report.at("generator"), report.at("inputs"), report.at("configuration")).dump();
+  } catch (const Json::exception& error) {
+    throw FormatError(run_json, std::string("is no run report of mapper: ") + error.what());
+  }
 }
 
 std::string difference(const std::string& before, const std::string& now) {

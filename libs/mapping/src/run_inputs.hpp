@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -14,17 +15,22 @@ struct ScanRange {
 };
 
 /// What a run is made from, as run.json says it.
+std::string generator();
 nlohmann::ordered_json configuration_of(const RunOptions& options, const MapperOptions& method);
-nlohmann::ordered_json scans_input(const RunOptions& options, const ScanSource& source, ScanRange range);
-nlohmann::ordered_json prior_input(const PriorPoints* prior);
+/// @throws IoError when a file of the recording is absent
+nlohmann::ordered_json inputs_of(const RunOptions& options, const ScanSource& source, ScanRange range, const PriorPoints* prior);
 
-/// SHA-256 over "name size" of the scans: tells recordings apart without reading them whole.
+/// SHA-256 over "name size" of the scans' files: tells recordings apart without reading them whole.
+/// @throws IoError when one of them is absent
 std::string listing_hash(const ScanSource& source, ScanRange range);
 
-/// All that the results of a run depend on, as text: the same text, the same results.
+/// All that the results of a run depend on, as text: the same text and the same build, the same results.
 std::string identity_of(const RunOptions& options, const MapperOptions& method, const ScanSource& source, ScanRange range, const PriorPoints* prior);
 
-/// Where two identities differ first: `preset was "default", is "paper"`; empty where they do not.
+/// The same of the run that wrote `run_json`. @throws FormatError when that is no run report
+std::string identity_in(const std::filesystem::path& run_json);
+
+/// Where two identities differ first: `configuration/preset was "default", is "paper"`; empty where they do not.
 std::string difference(const std::string& before, const std::string& now);
 
 }  // namespace priormap

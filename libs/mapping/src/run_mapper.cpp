@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <optional>
 
 #include <priormap/core/error.hpp>
 #include <priormap/core/process.hpp>
-#include <priormap/core/version.hpp>
 #include <priormap/mapping/mapper.hpp>
 #include <priormap/mapping/motion.hpp>
 #include <priormap/mapping/read_ahead.hpp>
@@ -86,9 +86,27 @@ void resume(OnlinePass& pass, const Checkpoints& checkpoints, ScanRange range, c
     events.inform("no checkpoint of this output: beginning with the first scan");
 }
 
+/// Without --resume a checkpoint is not looked at, but lost only when one of this run takes its place.
+void tell_of_checkpoint(const ResumableDirectory& output, const Events& events) {
+  if (output.checkpoint()) events.inform("beginning with the first scan: the checkpoint of an interrupted run, from which --resume goes on, is replaced by the first one of this run");
+}
+
+/// What an output that is whole needs of a run that would go on with it: nothing, but for what a kill while it was put in place left beside it.
+void leave_as_it_is(ResumableDirectory& output, const fs::path& directory, const std::string& identity, const Events& events) {
+  const std::string differs = difference(identity_in(directory / "run.json"), identity);
+  if (!differs.empty()) throw UsageError("--resume: " + directory.string() + " is whole already, and of another run: " + differs + "; leave out --resume, and give --overwrite or another output");
+  output.discard_checkpoint();
+  events.inform(directory.string() + " is whole already: there is nothing to resume");
+}
+
 void warn_of_empty_scans(const std::vector<MappedScan>& scans, const Events& events) {
   const auto num_empty = std::count_if(scans.begin(), scans.end(), [](const MappedScan& scan) { return scan.num_points == 0; });
   if (num_empty) events.warn(std::to_string(num_empty) + " scans hold no points; the motion was carried on there");
+}
+
+void warn_of_idle_times(const RunOptions& options, const Events& events) {
+  const std::string& asked = options.dataset.point_times;
+  if (options.preset == "paper" && !asked.empty() && asked != "none") events.warn("--point-times has no effect with --preset paper, which takes sweeps as they are");
 }
 
 void warn_of_bad_start(const MappedScan& first, const Events& events) {
@@ -103,7 +121,7 @@ PriorManifest map_manifest(const RunOptions& options, const PriorPoints* prior, 
     manifest.crs = start.crs->name();
     if (start.crs->has_vertical()) manifest.vertical = start.crs->vertical()->name();
   }
-  manifest.generator = "mapper " + std::string(version);
+  manifest.generator = generator();
   PriorSource scanned;
   scanned.id = "scans";
   scanned.kind = "mapper";
@@ -158,22 +176,31 @@ RunSummary summarise(const std::vector<MappedScan>& scans) {
 
 }  // namespace
 
-RunSummary run_mapper(const RunOptions& options, int threads, Overwrite overwrite, const Events& events) {
+std::optional<RunSummary> run_mapper(const RunOptions& options, int threads, Overwrite overwrite, const Events& events) {
   Stopwatch watch;
   StageTimes times;
-  using Begin = ResumableDirectory::Begin;
-  ResumableDirectory output(options.output, overwrite, "run.json", options.resume ? Begin::where_it_stood : Begin::anew);
+  const bool is_whole = options.resume && overwrite == Overwrite::refuse && fs::exists(options.output / "run.json");
+  ResumableDirectory output(options.output, is_whole ? Overwrite::allow : overwrite, "run.json");
   const MapperOptions method = MapperOptions::preset(options.preset);
   const auto source = open_scans(options.scans, options.dataset);
   const ScanRange range = range_of(*source, options);
   const auto prior = options.prior.empty() ? nullptr : open_prior(options.prior, options.prior_options);
+  warn_of_idle_times(options, events);
+  const std::string identity = identity_of(options, method, *source, range, prior.get());
+  if (is_whole) {
+    leave_as_it_is(output, options.output, identity, events);
+    return std::nullopt;
+  }
   const Start start = find_start(options.initial, prior.get(), first_scan(*source, range.first).points, method.prior_radius_m);
   if (prior) warn_of_height(start, *prior, events);
   std::optional<NearTiles> near;
   if (prior) near.emplace(*prior, start.frame, method.prior_radius_m, threads);
   OnlinePass pass{Mapper(method, near, {start.T_map_sensor, motion_at_start(*source, range.first, range.last), period_at_start(*source, range.first, range.last)}, threads), {}};
-  Checkpoints checkpoints(output, identity_of(options, method, *source, range, prior.get()), options.checkpoint_s, events);
-  if (options.resume) resume(pass, checkpoints, range, events);
+  Checkpoints checkpoints(output, identity, options.checkpoint_s, events);
+  if (options.resume)
+    resume(pass, checkpoints, range, events);
+  else
+    tell_of_checkpoint(output, events);
   times.start_s = watch.lap();
 
   map_scans(pass, *source, range, options, checkpoints, events);

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include <priormap/core/output_file.hpp>
-#include <priormap/core/version.hpp>
 
 #include "run_inputs.hpp"
 
@@ -89,9 +88,9 @@ Json totals(const RunFacts& facts) {
 void write_run_report(const std::filesystem::path& file, const RunFacts& facts) {
   Json rows = Json::array();
   for (const auto& scan : facts.scans) rows.push_back(scan_row(scan));
-  const Json report = {{"generator", "mapper " + std::string(version)},
+  const Json report = {{"generator", generator()},
                        {"configuration", configuration(facts)},
-                       {"inputs", {{"scans", scans_input(facts.options, facts.source, facts.range)}, {"prior", prior_input(facts.prior)}}},
+                       {"inputs", inputs_of(facts.options, facts.source, facts.range, facts.prior)},
                        {"frame", frame(facts.start)},
                        {"totals", totals(facts)},
                        {"scans", rows}};

@@ -9,6 +9,8 @@
 #include <valijson/validator.hpp>
 
 #include <priormap/core/error.hpp>
+#include <priormap/core/resumable_output.hpp>
+#include <priormap/core/state_archive.hpp>
 #include <priormap/mapping/run_mapper.hpp>
 #include <priormap/pointcloud/point_formats.hpp>
 
@@ -70,7 +72,7 @@ TEST_F(Run, GeoreferencedReportHoldsItsSchema) {
   options_.prior = folder_.path() / "prior.ply";
   options_.prior_options = {"EPSG:25832+7837", {640000, 5359000, 490}, ""};
   options_.initial.pose = {640000.2, 5359000, 491.7, 0, 0, 0, 1};
-  const RunSummary summary = run_mapper(options_, 1, Overwrite::refuse, {});
+  const RunSummary summary = run_mapper(options_, 1, Overwrite::refuse, {}).value();
   EXPECT_EQ(schema_violations(report()), "");
   EXPECT_EQ(summary.num_anchored, 3u);
   EXPECT_EQ(report()["totals"]["map_points"], summary.num_map_points);
@@ -92,6 +94,19 @@ TEST_F(Run, AStartFarAboveThePriorsGroundIsBlamedOnHeights) {
   options_.prior_options = {"EPSG:25832", {640000, 5359000, 0}, ""};   // buildings raised without terrain
   run_mapper(options_, 1, Overwrite::allow, events);
   EXPECT_NE(warnings.find("the start lies 492 m above the ground of prior.ply there, whose heights are undeclared"), std::string::npos) << warnings;
+}
+
+TEST_F(Run, TimesThatThePaperDoesNotHearAreWarnedOf) {
+  std::string warnings;
+  const Events events{[&](const std::string& message) { warnings += message + "\n"; }, {}, {}};
+  options_.no_map = true;
+  options_.limit = 1;
+  options_.dataset.point_times = "none";
+  run_mapper(options_, 1, Overwrite::refuse, events);
+  EXPECT_EQ(warnings, "");
+  options_.dataset.point_times = "clockwise";
+  run_mapper(options_, 1, Overwrite::allow, events);
+  EXPECT_NE(warnings.find("--point-times has no effect"), std::string::npos) << warnings;
 }
 
 TEST_F(Run, TheSchemaSeesAFault) {
@@ -165,9 +180,78 @@ TEST_F(Run, ACheckpointOfAnotherRunIsRefusedByName) {
   EXPECT_NE(refusal(other).find("map/map-voxel"), std::string::npos) << refusal(other);
   other = options_;
   other.initial.pose = {0, 0, 0, 0, 0, 0, 1};
-  EXPECT_NE(refusal(other).find("initial pose/initial-pose"), std::string::npos) << refusal(other);
+  EXPECT_NE(refusal(other).find("initial_pose/initial-pose"), std::string::npos) << refusal(other);
+  test::write_text(options_.scans / "times.txt", "0\n0.1\n0.25\n");
+  EXPECT_NE(refusal(options_).find("stamps"), std::string::npos) << refusal(options_);
+  std::filesystem::remove(options_.scans / "times.txt");
   test::write_raw(options_.scans / "2.bin", std::vector<float>{1, 2, 3, 0});
   EXPECT_NE(refusal(options_).find("names_and_sizes_sha256"), std::string::npos) << refusal(options_);
+}
+
+TEST_F(Run, OtherTimesOfThePointsAreAnotherRun) {
+  const auto write_times = [&](float time_s) {
+    for (const char* name : {"0", "1", "2"}) {
+      const auto num_points = std::filesystem::file_size(options_.scans / (std::string(name) + ".bin")) / 16;
+      test::write_raw(options_.scans / "point_times" / (std::string(name) + ".f32"), std::vector<float>(num_points, time_s));
+    }
+  };
+  write_times(0);
+  options_.checkpoint_s = 1e-9;
+  interrupted_run(options_, 2);
+  write_times(0.01f);
+  options_.resume = true;
+  EXPECT_THROW(run_mapper(options_, 1, Overwrite::refuse, {}), UsageError);
+  write_times(0);
+  EXPECT_TRUE(run_mapper(options_, 1, Overwrite::refuse, {}));
+}
+
+TEST_F(Run, AWrongOrHastyStartLosesNoCheckpoint) {
+  options_.checkpoint_s = 1e-9;
+  interrupted_run(options_, 2);
+  const std::filesystem::path checkpoint = folder_.path() / ".out.unfinished/checkpoint";
+  const std::string kept = text_of(checkpoint);
+  RunOptions mistyped = options_;
+  mistyped.scans = folder_.path() / "scan";
+  EXPECT_THROW(run_mapper(mistyped, 1, Overwrite::refuse, {}), IoError);
+  mistyped = options_;
+  mistyped.jobs = 2;   // not with --preset paper
+  EXPECT_THROW(run_mapper(mistyped, 1, Overwrite::refuse, {}), UsageError);
+  EXPECT_EQ(text_of(checkpoint), kept);
+
+  std::string told;
+  Events events;
+  events.info = [&](const std::string& text) { told += text; };
+  run_mapper(options_, 1, Overwrite::refuse, events);
+  EXPECT_NE(told.find("beginning with the first scan"), std::string::npos) << told;
+  EXPECT_FALSE(std::filesystem::exists(checkpoint.parent_path()));
+}
+
+TEST_F(Run, AWholeOutputIsLeftAsItIsByTheSameRunAlone) {
+  run_mapper(options_, 1, Overwrite::refuse, {});
+  const std::string report = text_of(options_.output / "run.json");
+  const std::filesystem::path unfinished = folder_.path() / ".out.unfinished";
+  test::write_text(unfinished / "checkpoint", "left by a kill after the output was put in place");
+  options_.resume = true;
+  RunOptions other = options_;
+  other.limit = 2;
+  EXPECT_THROW(run_mapper(other, 1, Overwrite::refuse, {}), UsageError);
+  EXPECT_FALSE(run_mapper(options_, 2, Overwrite::refuse, {}));
+  EXPECT_FALSE(std::filesystem::exists(unfinished));
+  EXPECT_EQ(text_of(options_.output / "run.json"), report);
+}
+
+TEST_F(Run, ACheckpointOfAnotherBuildIsRefusedAsSuch) {
+  StateArchive state;
+  std::string build = "another";
+  state(build);
+  ResumableDirectory(options_.output, Overwrite::refuse, "run.json").keep(state.take());
+  options_.resume = true;
+  try {
+    run_mapper(options_, 1, Overwrite::refuse, {});
+    ADD_FAILURE();
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("of another build of mapper"), std::string::npos) << error.what();
+  }
 }
 
 }  // namespace

@@ -138,6 +138,11 @@ Scan ScanFiles::read(std::size_t index) const {
   return scan;
 }
 
+std::vector<fs::path> ScanFiles::files(std::size_t index) const {
+  const fs::path times = point_times_.file_of(files_[index]);
+  return times == files_[index] ? std::vector{times} : std::vector{files_[index], times};
+}
+
 std::vector<fs::path> files_ending(const fs::path& path, const std::string& ending) {
   if (fs::is_regular_file(path)) return ends_with(path, ending) ? std::vector{path} : std::vector<fs::path>{};
   std::vector<fs::path> files;

@@ -45,6 +45,7 @@ class ScanFiles : public ScanSource {
   Scan read(std::size_t index) const override;
   double stamp_s(std::size_t index) const override { return stamps_s_[index]; }
   std::filesystem::path file(std::size_t index) const override { return files_[index]; }
+  std::vector<std::filesystem::path> files(std::size_t index) const override;
   const ScanSourceInfo& info() const override { return info_; }
 
  private:

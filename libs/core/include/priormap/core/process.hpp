@@ -1,9 +1,13 @@
 #pragma once
 #include <cstdint>
+#include <string>
 
 namespace priormap {
 
 /// VmHWM less clean file-mapped pages (RssFile) of this process, in bytes; 0 where /proc is absent.
 std::uint64_t peak_memory_bytes();
+
+/// The GNU build ID of the running program in hex: another build, another one. Empty where the linker gave none.
+std::string build_id();
 
 }  // namespace priormap

@@ -11,11 +11,9 @@ namespace priormap {
 /// holds the last checkpoint and goes away with the commit, or when there is no checkpoint to keep. One program at a time makes a target.
 class ResumableDirectory {
  public:
-  enum class Begin { anew, where_it_stood };
-
-  /// Removes what an interrupted program left, its checkpoint only when begun anew.
+  /// Removes what an interrupted program left but its checkpoint: that stays until another one takes its place.
   /// @throws IoError as AtomicDirectory, and while another program makes the same target
-  ResumableDirectory(std::filesystem::path target, Overwrite overwrite, std::string marker_file, Begin begin);
+  ResumableDirectory(std::filesystem::path target, Overwrite overwrite, std::string marker_file);
   ~ResumableDirectory();
   ResumableDirectory(const ResumableDirectory&) = delete;
   ResumableDirectory& operator=(const ResumableDirectory&) = delete;
@@ -25,6 +23,7 @@ class ResumableDirectory {
   std::optional<std::string> checkpoint() const;
   /// Keeps a checkpoint in place of the last one, whole or not at all. May run in a thread of its own. @throws IoError
   void keep(const std::string& checkpoint);
+  void discard_checkpoint();
   /// Puts the directory in place and removes the checkpoint. @throws IoError
   void commit();
 
@@ -38,7 +37,7 @@ class ResumableDirectory {
    private:
     int descriptor_;
   };
-  void remove_leftovers(bool with_checkpoint);
+  void remove_leftovers();
 
   AtomicDirectory output_;
   std::filesystem::path folder_;

@@ -47,8 +47,8 @@ struct RunSummary {
 };
 
 /// Maps the recording and writes the output directory, whole or not at all. A run that was killed goes on from its last checkpoint with `resume` and gives the same files (but for
-/// times in run.json).
+/// times in run.json). @return none: with `resume` an output that is whole already is left as it is
 /// @throws IoError, FormatError, CrsError, UsageError, each with one line for the user
-RunSummary run_mapper(const RunOptions& options, int threads, Overwrite overwrite, const Events& events);
+std::optional<RunSummary> run_mapper(const RunOptions& options, int threads, Overwrite overwrite, const Events& events);
 
 }  // namespace priormap

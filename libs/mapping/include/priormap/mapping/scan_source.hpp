@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include <priormap/mapping/scan.hpp>
 
@@ -17,6 +18,8 @@ class ScanSource {
   virtual Scan read(std::size_t index) const = 0;
   virtual double stamp_s(std::size_t index) const = 0;
   virtual std::filesystem::path file(std::size_t index) const = 0;
+  /// All that the scan is made from: `file`, and what lies beside it, as the times of its points.
+  virtual std::vector<std::filesystem::path> files(std::size_t index) const { return {file(index)}; }
   /// What the recording is and what was assumed or corrected in reading it, for the run report.
   virtual const struct ScanSourceInfo& info() const = 0;
 };
