@@ -18,7 +18,7 @@ struct DatasetOptions {
 
   template <class Visitor>
   void describe(Visitor& visit) {
-    visit("point-times", point_times, {"times of the points, by which the motion within a sweep is undone: folder of NAME.f32 (one float32 a point, seconds from the scan's stamp); clockwise or counter-clockwise: a spinning head that looks forward at the stamp; none: the scans are compensated. Default: point_times/ in or beside the scans, else what the points carry"});
+    visit("point-times", point_times, {"times of the points, by which the motion within a sweep is undone: folder of NAME.f32 (one float32 a point, seconds from the scan's stamp); clockwise or counter-clockwise: a spinning head that looks forward at the stamp; none: the scans are compensated. Default: point_times/ in or beside the scans; else clockwise for kitti-raw, the field of the points for clouds, none for the others. No effect with --preset paper"});
     visit("vertical-angle-correction", vertical_angle_correction_deg,
           {"raise the vertical angles, only with --dataset kitti-odometry (default there: 0.205, the paper 0.375)", "deg", -10, 10});
   }

@@ -24,8 +24,8 @@ struct FirstPose {
 /// Reads a scan of the recording again, by its index.
 using ReadScan = std::function<Scan(std::size_t)>;
 
-/// Maps a sequence of scans against a prior (Kulmer et al., OpenLiDARMap, VEHITS 2025): each scan is matched to the prior (absolute pose) and to a local
-/// map of the scans before it (relative pose); a pose graph joins the two.
+/// Maps a sequence of scans against a prior, by one of two methods. The default: odometry by surfels, its keyframes compared with the prior, and at the end one estimate of the whole drive in which pieces of the prior may lie off.
+/// The paper's (Kulmer et al., OpenLiDARMap, VEHITS 2025): each scan is matched to the prior (absolute pose) and to a local map of the scans before it (relative pose); a pose graph joins the two.
 class Mapper {
  public:
   /// @param prior  the prior's tiles in the frame `map`; none: odometry
