@@ -122,36 +122,7 @@ PriorSource source_of(const RasterInput& input, const RasterPoints& points, cons
   return source;
 }
 
-/// Hands the points of a raster to the writer, block by block. They lie on the lattice already, their origins at whole units.
-class LatticeWriter {
- public:
-  /// @param common  what all points of the raster share
-  LatticeWriter(const LasPoint& common, PriorWriter& writer) : writer_(writer), block_(capacity, common) {}
-
-  void write(const PointCloud& points) {
-    const LatticePoint corner{std::llround(points.origin.x() * 1000), std::llround(points.origin.y() * 1000)};
-    const auto base_z = static_cast<std::int32_t>(std::llround(points.origin.z() * 1000));
-    for (std::size_t first = 0; first < points.size(); first += capacity) {
-      const std::size_t count = std::min(capacity, points.size() - first);
-      for (std::size_t i = 0; i < count; ++i) {
-        const Eigen::Vector3f& offset = points.xyz[first + i];
-        LasPoint& point = block_[i];
-        point.x = steps(offset.x());
-        point.y = steps(offset.y());
-        point.z = base_z + steps(offset.z());
-        point.set_normal(points.normal[first + i]);
-      }
-      writer_.add(corner, std::span(block_).first(count));
-    }
-  }
-
- private:
-  static std::int32_t steps(float offset) { return static_cast<std::int32_t>(offset * 1000.0 + std::copysign(0.5, offset)); }
-
-  static constexpr std::size_t capacity = 1024;   // stays in the fastest cache
-  PriorWriter& writer_;
-  std::vector<LasPoint> block_;
-};
+LatticePoint lattice_corner(const Bounds2& area) { return {std::llround(area.min_x * 1000), std::llround(area.min_y * 1000)}; }
 
 /// What one thread needs to turn a raster into points of the prior.
 class AreaWorker {
@@ -159,23 +130,18 @@ class AreaWorker {
   AreaWorker(const RasterPoints& points, const BboxFilter& bbox, const std::vector<HeightRaster>& preferred) : points_(points), bbox_(bbox), preferred_(preferred) {}
 
   /// Calls visit(points) with those that belong to the prior.
-  void read(const Bounds2& area, const std::function<void(const PointCloud&)>& visit) {
-    points_.read(area, [&](PointCloud& cloud) {
-      if (!bbox_.is_active() && preferred_.empty()) return visit(cloud);
-      const PointCloud kept = kept_of(cloud);
-      if (!kept.empty()) visit(kept);
+  void read(const Bounds2& area, const LasPoint& common, const RasterPoints::Visit& visit) {
+    const LatticePoint corner = lattice_corner(area);
+    points_.read(area, common, [&](std::vector<LasPoint>& points) {
+      if (bbox_.is_active() || !preferred_.empty())
+        std::erase_if(points, [&](const LasPoint& p) { return !belongs(static_cast<double>(corner.x + p.x) / 1000, static_cast<double>(corner.y + p.y) / 1000); });
+      visit(points);
     });
   }
 
  private:
-  PointCloud kept_of(const PointCloud& cloud) const {
-    std::vector<std::uint32_t> kept;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      const Eigen::Vector3d p = cloud.position(i);
-      const auto covers = [&](const HeightRaster& raster) { return raster.at(p.x(), p.y()).has_value(); };
-      if (bbox_.contains(p.x(), p.y()) && std::none_of(preferred_.begin(), preferred_.end(), covers)) kept.push_back(static_cast<std::uint32_t>(i));
-    }
-    return cloud.select(kept);
+  bool belongs(double x, double y) const {
+    return bbox_.contains(x, y) && std::none_of(preferred_.begin(), preferred_.end(), [&](const HeightRaster& raster) { return raster.at(x, y).has_value(); });
   }
 
   RasterPoints points_;
@@ -227,8 +193,8 @@ std::vector<HeightRaster> preferred_of(const std::vector<RasterInput>& inputs, s
 class TileSquares {
  public:
   TileSquares(const Bounds2& area, double tile_size, double point_spacing) : tile_size_(tile_size) {
-    constexpr double points_along_edge = 256;
-    tiles_along_edge_ = static_cast<std::int32_t>(std::max(1.0, std::floor(points_along_edge * point_spacing / tile_size)));
+    constexpr double points_along_edge = 256, longest_edge = 1e6;
+    tiles_along_edge_ = static_cast<std::int32_t>(std::max(1.0, std::floor(std::min(points_along_edge * point_spacing, longest_edge) / tile_size)));
     if (area.empty()) return;
     const double edge = tiles_along_edge_ * tile_size;
     first_x_ = static_cast<std::int32_t>(std::floor(area.min_x / edge));
@@ -269,9 +235,8 @@ std::uint64_t write_raster(const AreaWorker& prototype, const TileSquares& squar
     const TileSquares::Tiles tiles = squares.tiles(i);
     const Bounds2 area = squares.bounds(tiles);
     pool.with_worker([&](AreaWorker& worker) {
-      LatticeWriter lattice(common, writer);
-      worker.read(area, [&](const PointCloud& points) {
-        lattice.write(points);
+      worker.read(area, common, [&](std::vector<LasPoint>& points) {
+        writer.add(lattice_corner(area), points);
         num_points += points.size();
       });
     });

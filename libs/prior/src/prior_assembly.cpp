@@ -35,14 +35,15 @@ class TileDistributor {
   void add(std::span<PointRecord> records, const X& x, const Y& y) const {
     for (std::size_t first = 0; first < records.size();) {
       const TileKey key = grid_.key(x(first), y(first));
-      const std::int64_t low_x = grid_.origin(key.x), low_y = grid_.origin(key.y), size = grid_.tile_steps();
+      const std::int64_t low_x = grid_.origin(key.x), low_y = grid_.origin(key.y);
+      const auto size = std::uint64_t(grid_.tile_steps());
       std::size_t last = first;
       for (; last < records.size(); ++last) {
         const std::int64_t dx = x(last) - low_x, dy = y(last) - low_y;
-        if (dx < 0 || dy < 0 || dx >= size || dy >= size) break;
+        if (std::uint64_t(dx) >= size || std::uint64_t(dy) >= size) break;
         records[last].x = std::int32_t(dx);
         records[last].y = std::int32_t(dy);
-        if (is_near_edge(dx, dy)) add_halo(records[last], dx + low_x, dy + low_y, key);
+        if (halo_ > 0 && is_near_edge(dx, dy)) add_halo(records[last], dx + low_x, dy + low_y, key);
       }
       spool_.add(key, records.subspan(first, last - first));
       first = last;
@@ -52,7 +53,7 @@ class TileDistributor {
  private:
   bool is_near_edge(std::int64_t dx, std::int64_t dy) const {
     const std::int64_t last = grid_.tile_steps() - 1 - halo_;
-    return halo_ > 0 && (dx < halo_ || dy < halo_ || dx > last || dy > last);
+    return dx < halo_ || dy < halo_ || dx > last || dy > last;
   }
 
   void add_halo(PointRecord record, std::int64_t x, std::int64_t y, TileKey own) const {

@@ -1,10 +1,17 @@
 #include "point_grid.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
-#include <optional>
+#include <utility>
+
+// Loops over a line are compiled for AVX2 as well, and the loader takes what the processor has. Without fused multiply-add: the results are the same.
+#if defined(__x86_64__)
+#define PRIORMAP_ALSO_AVX2 __attribute__((target_clones("avx2", "default")))
+#else
+#define PRIORMAP_ALSO_AVX2
+#endif
 
 namespace priormap {
 namespace {
@@ -18,8 +25,8 @@ inline double thousandths(double v) {
   return (v * 1000 + rounding) - rounding;
 }
 
-/// The step of height from a point to the next, given the heights before and after: the mean of both sides, or the flatter side where they
-/// differ by more than `limit`, or the one that is known. NaN where neither is. Without branches, for a row at once.
+/// The step of height from a place to the next, given the heights before and after: the mean of both sides, or the flatter side where they
+/// differ by more than `limit`, or the one that is known. NaN where neither is. Without branches, for a line at once.
 inline float height_step(double before, double z, double after, float limit) {
   const auto in = static_cast<float>(z - before), out = static_cast<float>(after - z);
   const float flatter = std::abs(in) <= std::abs(out) ? in : out;
@@ -27,163 +34,171 @@ inline float height_step(double before, double z, double after, float limit) {
   return std::abs(in - out) <= limit ? 0.5f * (in + out) : known;
 }
 
+/// The inner places of a line as points have them; z is `none` where there is no point.
+struct LineSteps {
+  static constexpr std::int32_t none = std::numeric_limits<std::int32_t>::min();
+
+  explicit LineSteps(std::size_t count) : x(count), y(count), z(count), normal_x(count), normal_y(count), normal_z(count) {}
+  std::vector<std::int32_t> x, y, z;
+  std::vector<std::int16_t> normal_x, normal_y, normal_z;
+};
+
 class NormalRule {
  public:
   explicit NormalRule(const PointGrid& grid)
-      : along_(grid.along.cast<float>()),
-        down_(grid.down.cast<float>()),
-        up_(along_.x() * down_.y() - along_.y() * down_.x()),
-        limit_along_(static_cast<float>(step_slope) * along_.norm()),
-        limit_down_(static_cast<float>(step_slope) * down_.norm()),
+      : line_length_(grid.length),
+        across_(grid.across.cast<float>()),
+        back_(grid.back.cast<float>()),
+        up_(across_.x() * back_.y() - across_.y() * back_.x()),
+        limit_across_(static_cast<float>(step_slope) * across_.norm()),
+        limit_back_(static_cast<float>(step_slope) * back_.norm()),
         sign_(up_ < 0 ? -1.0f : 1.0f) {}
 
-  /// (along, step) x (down, step), upwards, of `count` points in a row; zero where a step is not known.
-  void of_row(const double* z, std::size_t grid_width, std::size_t count, float* nx, float* ny, float* nz) const {
-    const double *above = z - grid_width, *below = z + grid_width;
-    const float along_x = along_.x(), along_y = along_.y(), down_x = down_.x(), down_y = down_.y();
-    const float up = up_, limit_along = limit_along_, limit_down = limit_down_, sign = sign_;
+  /// (across, step) x (back, step), upwards, of the places from `z` on; zero where a step is not known.
+  PRIORMAP_ALSO_AVX2 void of_line(const double* z, LineSteps& line) const {
+    const double *before = z - line_length_, *after = z + line_length_;
+    const float across_x = across_.x(), across_y = across_.y(), back_x = back_.x(), back_y = back_.y();
+    const float up = up_, limit_across = limit_across_, limit_back = limit_back_, sign = sign_;
+    std::int16_t *nx = line.normal_x.data(), *ny = line.normal_y.data(), *nz = line.normal_z.data();
+    const std::size_t count = line.z.size();
     for (std::size_t i = 0; i < count; ++i) {
-      const float a = height_step(z[i - 1], z[i], z[i + 1], limit_along), d = height_step(above[i], z[i], below[i], limit_down);
-      const float x = along_y * d - a * down_y, y = a * down_x - along_x * d;
+      const float a = height_step(before[i], z[i], after[i], limit_across), b = height_step(z[i + 1], z[i], z[i - 1], limit_back);
+      const float x = across_y * b - a * back_y, y = a * back_x - across_x * b;
       const float scale = sign / std::sqrt(x * x + y * y + up * up);
       const bool known = scale == scale;
-      nx[i] = known ? x * scale : 0;
-      ny[i] = known ? y * scale : 0;
-      nz[i] = known ? up * scale : 0;
+      nx[i] = LasPoint::normal_steps(known ? x * scale : 0);
+      ny[i] = LasPoint::normal_steps(known ? y * scale : 0);
+      nz[i] = LasPoint::normal_steps(known ? up * scale : 0);
     }
   }
 
  private:
-  Eigen::Vector2f along_, down_;
-  float up_, limit_along_, limit_down_, sign_;
+  std::size_t line_length_;
+  Eigen::Vector2f across_, back_;
+  float up_, limit_across_, limit_back_, sign_;
 };
 
-/// Coordinates of a row in float32 from an origin in thousandths.
-void offsets_of_row(const double* v, std::size_t count, double origin, float* offsets) {
-  for (std::size_t i = 0; i < count; ++i) offsets[i] = static_cast<float>((thousandths(v[i]) - origin) * 0.001);
-}
+/// An area in whole thousandths.
+class LatticeArea {
+ public:
+  explicit LatticeArea(const Bounds2& area)
+      : min_x_(thousandths(area.min_x)), min_y_(thousandths(area.min_y)), max_x_(thousandths(area.max_x)), max_y_(thousandths(area.max_y)) {}
 
-/// NaN where a coordinate lies outside of [min, max), in thousandths.
-void clear_outside(const double* v, std::size_t count, double min, double max, float* offsets) {
-  constexpr float none = std::numeric_limits<float>::quiet_NaN();
-  for (std::size_t i = 0; i < count; ++i) {
-    const double rounded = thousandths(v[i]);
-    const bool inside = (rounded >= min) & (rounded < max);
-    offsets[i] = inside ? offsets[i] : none;
+  bool contains(double x, double y) const { return (x >= min_x_) & (x < max_x_) & (y >= min_y_) & (y < max_y_); }
+  std::int32_t x_steps(double x) const { return static_cast<std::int32_t>(x - min_x_); }
+  std::int32_t y_steps(double y) const { return static_cast<std::int32_t>(y - min_y_); }
+
+  PRIORMAP_ALSO_AVX2 void positions_of_line(const double* x, const double* y, const double* z, LineSteps& line) const {
+    const LatticeArea area = *this;
+    std::int32_t *to_x = line.x.data(), *to_y = line.y.data(), *to_z = line.z.data();
+    const std::size_t count = line.z.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const double at_x = thousandths(x[i]), at_y = thousandths(y[i]), at_z = thousandths(z[i]);
+      const bool inside = area.contains(at_x, at_y) & (at_z == at_z);
+      to_x[i] = static_cast<std::int32_t>(inside ? at_x - area.min_x_ : 0);
+      to_y[i] = static_cast<std::int32_t>(inside ? at_y - area.min_y_ : 0);
+      to_z[i] = static_cast<std::int32_t>(inside ? at_z : LineSteps::none);
+    }
   }
-}
 
-/// Near the first point with a height, in whole units; nothing where there is none.
-std::optional<Eigen::Vector3d> origin_of(const PointGrid& grid) {
-  for (std::size_t row = 1; row + 1 < grid.height; ++row)
-    for (std::size_t i = row * grid.width + 1; i + 1 < (row + 1) * grid.width; ++i)
-      if (!std::isnan(grid.z[i])) return Eigen::Vector3d(grid.x[i], grid.y[i], grid.z[i]).array().round();
-  return std::nullopt;
-}
-
-/// x, y, z (NaN: no point) and the normal of a grid's inner points, one array each, row by row.
-void fill_work(PointGrid& grid, const Bounds2& area, const Eigen::Vector3d& origin) {
-  const std::size_t width = grid.width - 2, height = grid.height - 2;
-  for (auto& array : grid.work) array.resize(width * height);
-  auto& [x, y, z, nx, ny, nz] = grid.work;
-  const Eigen::Vector3d zero = origin * 1000;
-  const NormalRule normals(grid);
-  for (std::size_t row = 0; row < height; ++row) {
-    const std::size_t from = (row + 1) * grid.width + 1, to = row * width;
-    offsets_of_row(&grid.x[from], width, zero.x(), &x[to]);
-    offsets_of_row(&grid.y[from], width, zero.y(), &y[to]);
-    offsets_of_row(&grid.z[from], width, zero.z(), &z[to]);
-    clear_outside(&grid.x[from], width, thousandths(area.min_x), thousandths(area.max_x), &z[to]);
-    clear_outside(&grid.y[from], width, thousandths(area.min_y), thousandths(area.max_y), &z[to]);
-    normals.of_row(&grid.z[from], grid.width, width, &nx[to], &ny[to], &nz[to]);
-  }
-}
-
-/// Where the points of each column go; after the last one their number.
-std::vector<std::uint32_t> places_of_columns(const std::vector<float>& z, std::size_t width) {
-  std::vector<std::uint32_t> places(width + 1, 0);
-  for (std::size_t i = 0; i < z.size(); i += width)
-    for (std::size_t col = 0; col < width; ++col) places[col + 1] += z[i + col] == z[i + col];
-  std::partial_sum(places.begin(), places.end(), places.begin());
-  return places;
-}
+ private:
+  double min_x_, min_y_, max_x_, max_y_;
+};
 
 /// Adds the points of the walls that a grid has.
 class WallBuilder {
  public:
-  WallBuilder(const PointGrid& grid, const StepWalls& walls, const Bounds2& area, PointCloud& points) : grid_(grid), walls_(walls), area_(area), points_(points) {}
+  WallBuilder(const PointGrid& grid, const StepWalls& walls, const LatticeArea& area, const LasPoint& common, std::vector<LasPoint>& points)
+      : grid_(grid), walls_(walls), area_(area), common_(common), points_(points), across_(grid.across.normalized().cast<float>()), back_(grid.back.normalized().cast<float>()) {}
 
-  /// @param across  a unit vector in the plane, from neighbour `a` to `b`
-  void between(std::size_t a, std::size_t b, const Eigen::Vector2f& across) {
+  bool is_to_next_line(std::size_t place) const { return is_between(place, place + grid_.length); }
+  bool is_to_place_before(std::size_t place) const { return is_between(place, place - 1); }
+  void add_to_next_line(std::size_t place) { add(place, place + grid_.length, across_); }
+  void add_to_place_before(std::size_t place) { add(place, place - 1, back_); }
+
+ private:
+  bool is_between(std::size_t a, std::size_t b) const { return std::abs(grid_.z[b] - grid_.z[a]) > walls_.least_step; }
+
+  /// From the lowest point up. @param way  a unit vector in the plane, from neighbour `a` to `b`
+  void add(std::size_t a, std::size_t b, const Eigen::Vector2f& way) {
     const double step = grid_.z[b] - grid_.z[a];
-    if (!(std::abs(step) > walls_.least_step)) return;
     const double x = thousandths(0.5 * (grid_.x[a] + grid_.x[b])), y = thousandths(0.5 * (grid_.y[a] + grid_.y[b]));
-    if (x < thousandths(area_.min_x) || x >= thousandths(area_.max_x) || y < thousandths(area_.min_y) || y >= thousandths(area_.max_y)) return;
-    const Eigen::Vector2f outward = step < 0 ? across : Eigen::Vector2f(-across);
+    if (!area_.contains(x, y)) return;
+    LasPoint wall = common_;
+    wall.x = area_.x_steps(x);
+    wall.y = area_.y_steps(y);
+    const float outward = step < 0 ? 1.0f : -1.0f;
+    wall.set_normal({outward * way.x(), outward * way.y(), 0});
     const auto count = static_cast<std::size_t>(std::max(1.0, std::round(std::abs(step) / walls_.rise)));
     for (std::size_t i = 0; i < count; ++i) {
-      const double z = thousandths(grid_.z[a] + step * (static_cast<double>(i) + 0.5) / static_cast<double>(count));
-      points_.xyz.push_back(((Eigen::Vector3d(x, y, z) - 1000 * points_.origin) / 1000).cast<float>());
-      points_.normal.emplace_back(outward.x(), outward.y(), 0.0f);
+      const std::size_t part = step < 0 ? count - 1 - i : i;
+      wall.z = static_cast<std::int32_t>(thousandths(grid_.z[a] + step * (static_cast<double>(part) + 0.5) / static_cast<double>(count)));
+      points_.push_back(wall);
     }
   }
 
- private:
   const PointGrid& grid_;
   const StepWalls& walls_;
-  const Bounds2& area_;
-  PointCloud& points_;
+  const LatticeArea& area_;
+  const LasPoint& common_;
+  std::vector<LasPoint>& points_;
+  Eigen::Vector2f across_, back_;
 };
+
+/// Adds the points of places [first, last) of a line.
+void append(const LineSteps& line, std::size_t first, std::size_t last, const LasPoint& common, std::vector<LasPoint>& points) {
+  const std::int32_t *x = line.x.data(), *y = line.y.data(), *z = line.z.data();
+  const std::int16_t *normal_x = line.normal_x.data(), *normal_y = line.normal_y.data(), *normal_z = line.normal_z.data();
+  for (std::size_t i = first; i < last; ++i) {
+    if (z[i] == LineSteps::none) continue;
+    LasPoint& point = points.emplace_back(common);
+    point.x = x[i];
+    point.y = y[i];
+    point.z = z[i];
+    point.normal[0] = normal_x[i];
+    point.normal[1] = normal_y[i];
+    point.normal[2] = normal_z[i];
+  }
+}
 
 }  // namespace
 
-void PointGrid::resize(std::size_t new_width, std::size_t new_height) {
-  width = new_width;
-  height = new_height;
+void PointGrid::resize(std::size_t new_lines, std::size_t new_length) {
+  lines = new_lines;
+  length = new_length;
   x.resize(size());
   y.resize(size());
   z.resize(size());
 }
 
-void points_of_grid(PointGrid& grid, const Bounds2& area, PointCloud& points) {
-  points.clear();
-  if (grid.width < 3 || grid.height < 3) return;
-  const auto origin = origin_of(grid);
-  if (!origin) return;
-  points.origin = *origin;
-  fill_work(grid, area, *origin);
-  const std::size_t width = grid.width - 2, height = grid.height - 2;
-  std::vector<std::uint32_t> places = places_of_columns(grid.work[2], width);
-  points.xyz.resize(places.back());
-  points.normal.resize(places.back());
-  const float *x = grid.work[0].data(), *y = grid.work[1].data(), *z = grid.work[2].data();
-  const float *nx = grid.work[3].data(), *ny = grid.work[4].data(), *nz = grid.work[5].data();
-  Eigen::Vector3f *xyz = points.xyz.data(), *normal = points.normal.data();
-  std::uint32_t* place = places.data();
-  constexpr std::size_t stripe = 16;   // columns that share a line of the cache
-  for (std::size_t left = 0; left < width; left += stripe)
-    for (std::size_t row = height; row-- > 0;)
-      for (std::size_t col = left, i = row * width + left; col < std::min(left + stripe, width); ++col, ++i) {
-        if (std::isnan(z[i])) continue;
-        const std::uint32_t to = place[col]++;
-        xyz[to] = {x[i], y[i], z[i]};
-        normal[to] = {nx[i], ny[i], nz[i]};
-      }
-}
-
-void walls_of_grid(const PointGrid& grid, const StepWalls& walls, const Bounds2& area, PointCloud& points) {
-  points.clear();
-  if (grid.width < 3 || grid.height < 3) return;
-  const auto origin = origin_of(grid);
-  if (!origin) return;
-  points.origin = *origin;
-  WallBuilder builder(grid, walls, area, points);
-  const Eigen::Vector2f along = grid.along.normalized().cast<float>(), down = grid.down.normalized().cast<float>();
-  for (std::size_t row = 1; row + 1 < grid.height; ++row)
-    for (std::size_t i = row * grid.width + 1; i + 1 < (row + 1) * grid.width; ++i) {
-      builder.between(i, i + 1, along);
-      builder.between(i, i + grid.width, down);
+void points_of_grid(const PointGrid& grid, const std::optional<StepWalls>& walls, const Bounds2& area, const LasPoint& common,
+                    const std::function<void(std::vector<LasPoint>& points)>& visit) {
+  if (grid.lines < 3 || grid.length < 3) return;
+  constexpr std::size_t enough = 512;   // stay in the fastest cache
+  std::vector<LasPoint> points;
+  const LatticeArea lattice(area);
+  const NormalRule normals(grid);
+  std::optional<WallBuilder> builder;
+  if (walls) builder.emplace(grid, *walls, lattice, common, points);
+  LineSteps line(grid.length - 2);
+  for (std::size_t i = grid.length + 1; i + grid.length < grid.size(); i += grid.length) {
+    lattice.positions_of_line(&grid.x[i], &grid.y[i], &grid.z[i], line);
+    normals.of_line(&grid.z[i], line);
+    const std::size_t count = line.z.size();
+    std::size_t done = 0;
+    for (std::size_t k = 0; builder && k < count; ++k) {
+      if (!builder->is_to_place_before(i + k)) continue;
+      append(line, std::exchange(done, k), k, common, points);
+      builder->add_to_place_before(i + k);
     }
+    append(line, done, count, common, points);
+    for (std::size_t k = 0; builder && k < count; ++k)
+      if (builder->is_to_next_line(i + k)) builder->add_to_next_line(i + k);
+    if (points.size() < enough) continue;
+    visit(points);
+    points.clear();
+  }
+  if (!points.empty()) visit(points);
 }
 
 }  // namespace priormap

@@ -18,10 +18,9 @@
 namespace priormap {
 namespace {
 
-/// A cloud reaches no farther than this from its origin, so that float32 keeps the millimetre lattice.
-constexpr double cloud_extent = 2048;
-/// Cells along the edge of one cloud; and of a patch with normals of its own orientation, in another CRS. A stripe from north to south stays in the cache.
-constexpr int cloud_edge = 512, patch_edge = 128, stripe_width = 32;
+/// Cells along the edge of one grid; and of a patch with normals of its own orientation, in another CRS, where it reaches no farther than this. A stripe from north to south stays in the cache.
+constexpr int grid_edge = 512, patch_edge = 128, stripe_width = 32;
+constexpr double patch_extent = 2048;
 
 /// Transforms positions with a height in place; where that fails the height is lost.
 void transform_known(InterpolatedTransformer& transformer, PointGrid& grid, std::vector<Eigen::Vector3d>& buffer) {
@@ -77,14 +76,6 @@ std::optional<StepWalls> step_walls(const Crs& target, double cell_size, const s
   return StepWalls{std::max(*least_wall_m, cell_m) / unit_m, std::min(cell_m, greatest_rise_m) / unit_m};
 }
 
-void visit_points(PointGrid& grid, const std::optional<StepWalls>& walls, const Bounds2& area, PointCloud& points, const std::function<void(PointCloud&)>& visit) {
-  points_of_grid(grid, area, points);
-  if (!points.empty()) visit(points);
-  if (!walls) return;
-  walls_of_grid(grid, *walls, area, points);
-  if (!points.empty()) visit(points);
-}
-
 /// The raster's own cell centres.
 class CellSampling {
  public:
@@ -95,7 +86,7 @@ class CellSampling {
   const CoordinateOperation& operation() const { return transformer_.exact().operation(); }
   double cell_size() const { return cell_size_; }
 
-  void read(const Bounds2& area, const std::function<void(PointCloud&)>& visit) {
+  void read(const Bounds2& area, const LasPoint& common, const RasterPoints::Visit& visit) {
     const CellWindow window = window_over(area);
     if (window.width <= 0 || window.height <= 0) return;
     held_ = grown(window);
@@ -104,7 +95,7 @@ class CellSampling {
     for_each_patch(window, [&](const CellWindow& patch, const CellWindow& part) {
       fill_grid(part);
       if (!is_identity()) transform_grid(patch);
-      visit_points(grid_, walls_, area, points_, visit);
+      points_of_grid(grid_, walls_, area, common, visit);
     });
   }
 
@@ -116,9 +107,9 @@ class CellSampling {
     const RasterFacts& facts = raster_.facts();
     cell_size_ = target_cell_size(raster_, transformer_.exact());
     const double longer = cell_size_ * std::sqrt(std::max(facts.cell_x / facts.cell_y, facts.cell_y / facts.cell_x));
-    const auto most_cells = [&](int wanted) { return static_cast<int>(std::clamp(cloud_extent / longer, 1.0, static_cast<double>(wanted))); };
-    patch_width_ = most_cells(is_identity() ? stripe_width : patch_edge);
-    patch_height_ = most_cells(is_identity() ? cloud_edge : patch_edge);
+    const int most_patch = static_cast<int>(std::clamp(patch_extent / longer, 1.0, static_cast<double>(patch_edge)));
+    patch_width_ = is_identity() ? stripe_width : most_patch;
+    patch_height_ = is_identity() ? grid_edge : most_patch;
     bounds_ = target_bounds(facts, cell_size_, transformer_);
     walls_ = step_walls(target, cell_size_, least_wall_m);
   }
@@ -174,29 +165,34 @@ class CellSampling {
     const Eigen::Vector2d middle = raster_.world_from_cell() * Eigen::Vector2d(patch.col + patch.width / 2 + 0.5, patch.row + patch.height / 2 + 0.5);
     std::array<Eigen::Vector3d, 3> p;
     p[0] << middle, 0;
-    p[1] << middle + grid_.along, 0;
-    p[2] << middle + grid_.down, 0;
+    p[1] << middle + grid_.across, 0;
+    p[2] << middle + grid_.back, 0;
     transformer_.exact().forward(p);
-    grid_.along = (p[1] - p[0]).head<2>();
-    grid_.down = (p[2] - p[0]).head<2>();
+    grid_.across = (p[1] - p[0]).head<2>();
+    grid_.back = (p[2] - p[0]).head<2>();
     transform_known(transformer_, grid_, buffer_);
   }
 
   void fill_grid(const CellWindow& window) {
     grid_.resize(static_cast<std::size_t>(window.width) + 2, static_cast<std::size_t>(window.height) + 2);
     const Eigen::Affine2d& world_from_cell = raster_.world_from_cell();
-    grid_.along = world_from_cell.linear().col(0);
-    grid_.down = world_from_cell.linear().col(1);
-    std::size_t i = 0;
-    for (int row = window.row - 1; row <= window.row + window.height; ++row) {
-      for (int col = window.col - 1; col <= window.col + window.width; ++col, ++i) {
-        const Eigen::Vector2d p = world_from_cell * Eigen::Vector2d(col + 0.5, row + 0.5);
-        grid_.x[i] = p.x();
-        grid_.y[i] = p.y();
-        const int held_col = col - held_.col, held_row = row - held_.row;
-        const bool inside = held_col >= 0 && held_col < held_.width && held_row >= 0 && held_row < held_.height;
-        grid_.z[i] = inside ? heights_[static_cast<std::size_t>(held_row) * static_cast<std::size_t>(held_.width) + static_cast<std::size_t>(held_col)]
-                            : std::numeric_limits<double>::quiet_NaN();
+    grid_.across = world_from_cell.linear().col(0);
+    grid_.back = world_from_cell.linear().col(1);
+    const int south = window.row + window.height;   // the first place of each line
+    for (std::size_t line = 0; line < grid_.lines; ++line) {
+      const int col = window.col - 1 + static_cast<int>(line), held_col = col - held_.col;
+      double *x = &grid_.x[line * grid_.length], *y = &grid_.y[line * grid_.length], *z = &grid_.z[line * grid_.length];
+      for (std::size_t i = 0; i < grid_.length; ++i) {
+        const Eigen::Vector2d p = world_from_cell * Eigen::Vector2d(col + 0.5, south - static_cast<int>(i) + 0.5);
+        x[i] = p.x();
+        y[i] = p.y();
+      }
+      const bool is_held = held_col >= 0 && held_col < held_.width;
+      for (std::size_t i = 0; i < grid_.length; ++i) {
+        const int held_row = south - static_cast<int>(i) - held_.row;
+        z[i] = is_held && held_row >= 0 && held_row < held_.height
+                   ? heights_[static_cast<std::size_t>(held_row) * static_cast<std::size_t>(held_.width) + static_cast<std::size_t>(held_col)]
+                   : std::numeric_limits<double>::quiet_NaN();
       }
     }
   }
@@ -211,7 +207,6 @@ class CellSampling {
   std::vector<double> heights_;
   PointGrid grid_;
   std::vector<Eigen::Vector3d> buffer_;
-  PointCloud points_;
 };
 
 /// Cells of a square lattice of the target CRS: node (i, j) at ((i + 0.5) s, (j + 0.5) s), so that none lies on the edge of a tile.
@@ -219,7 +214,6 @@ class LatticeSampling {
  public:
   LatticeSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, double spacing, const std::optional<double>& least_wall_m)
       : raster_(HeightRaster::open(file, source, target)), transformer_(source, target, area_of(read_raster_facts(file), source)), spacing_(spacing), walls_(step_walls(target, spacing, least_wall_m)) {
-    cloud_nodes_ = static_cast<std::int64_t>(std::clamp(cloud_extent / spacing, 1.0, static_cast<double>(cloud_edge)));
     InterpolatedTransformer horizontal(Transformer(source.horizontal(), target.horizontal()));
     bounds_ = target_bounds(read_raster_facts(file), raster_.cell_size(), horizontal);
   }
@@ -228,15 +222,15 @@ class LatticeSampling {
   const CoordinateOperation& operation() const { return transformer_.operation(); }
   double cell_size() const { return raster_.cell_size(); }
 
-  void read(const Bounds2& area, const std::function<void(PointCloud&)>& visit) {
+  void read(const Bounds2& area, const LasPoint& common, const RasterPoints::Visit& visit) {
     const auto first = [&](double v) { return static_cast<std::int64_t>(std::floor(v / spacing_ - 0.5)); };
     const auto last = [&](double v) { return static_cast<std::int64_t>(std::ceil(v / spacing_ - 0.5)) + 1; };
     const Bounds2 known = bounds_.value_or(area);
     const std::int64_t end_i = last(std::min(area.max_x, known.max_x)), end_j = last(std::min(area.max_y, known.max_y));
-    for (std::int64_t j = first(std::max(area.min_y, known.min_y)); j < end_j; j += cloud_nodes_) {
-      for (std::int64_t i = first(std::max(area.min_x, known.min_x)); i < end_i; i += cloud_nodes_) {
-        fill_grid(i, j, std::min(cloud_nodes_, end_i - i), std::min(cloud_nodes_, end_j - j));
-        visit_points(grid_, walls_, area, points_, visit);
+    for (std::int64_t j = first(std::max(area.min_y, known.min_y)); j < end_j; j += grid_edge) {
+      for (std::int64_t i = first(std::max(area.min_x, known.min_x)); i < end_i; i += stripe_width) {
+        fill_grid(i, j, std::min<std::int64_t>(stripe_width, end_i - i), std::min<std::int64_t>(grid_edge, end_j - j));
+        points_of_grid(grid_, walls_, area, common, visit);
       }
     }
   }
@@ -244,11 +238,11 @@ class LatticeSampling {
  private:
   void fill_grid(std::int64_t first_i, std::int64_t first_j, std::int64_t width, std::int64_t height) {
     grid_.resize(static_cast<std::size_t>(width) + 2, static_cast<std::size_t>(height) + 2);
-    grid_.along = {spacing_, 0};
-    grid_.down = {0, -spacing_};
+    grid_.across = {spacing_, 0};
+    grid_.back = {0, -spacing_};
     std::size_t k = 0;
-    for (std::int64_t j = first_j + height; j >= first_j - 1; --j) {
-      for (std::int64_t i = first_i - 1; i <= first_i + width; ++i, ++k) {
+    for (std::int64_t i = first_i - 1; i <= first_i + width; ++i) {
+      for (std::int64_t j = first_j - 1; j <= first_j + height; ++j, ++k) {
         grid_.x[k] = (static_cast<double>(i) + 0.5) * spacing_;
         grid_.y[k] = (static_cast<double>(j) + 0.5) * spacing_;
         grid_.z[k] = raster_.at(grid_.x[k], grid_.y[k]).value_or(std::numeric_limits<double>::quiet_NaN());
@@ -260,10 +254,8 @@ class LatticeSampling {
   Transformer transformer_;
   double spacing_;
   std::optional<StepWalls> walls_;
-  std::int64_t cloud_nodes_ = cloud_edge;
   std::optional<Bounds2> bounds_;
   PointGrid grid_;
-  PointCloud points_;
 };
 
 using Sampling = std::variant<CellSampling, LatticeSampling>;
@@ -293,8 +285,8 @@ RasterPoints::RasterPoints(RasterPoints&&) noexcept = default;
 RasterPoints& RasterPoints::operator=(RasterPoints&&) noexcept = default;
 RasterPoints::~RasterPoints() = default;
 
-void RasterPoints::read(const Bounds2& area, const std::function<void(PointCloud&)>& visit) {
-  std::visit([&](auto& sampling) { sampling.read(area, visit); }, impl_->sampling);
+void RasterPoints::read(const Bounds2& area, const LasPoint& common, const Visit& visit) {
+  std::visit([&](auto& sampling) { sampling.read(area, common, visit); }, impl_->sampling);
 }
 
 const std::optional<Bounds2>& RasterPoints::bounds() const {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
 #include <limits>
 #include <string>
@@ -285,6 +286,8 @@ LatticeSurvey survey(std::span<const LasPoint> points) {
   return {{Eigen::Vector3i(low), Eigen::Vector3i(high)}, whole};
 }
 
+static_assert(offsetof(LasPoint, sigma_mm) == offsetof(LasPoint, normal) + 6 && offsetof(LasPoint, source) == offsetof(LasPoint, normal) + 8, "as extra bytes follow each other");
+
 /// All columns of a point in one go; the four extra columns follow each other in every plan. What is not set stays zero.
 void encode_lattice_points(std::span<const LasPoint> points, bool extended, const FilePlan& plan, std::byte* records) {
   const std::byte only_return{static_cast<unsigned char>(extended ? 0x11 : 0x09)};
@@ -293,16 +296,12 @@ void encode_lattice_points(std::span<const LasPoint> points, bool extended, cons
   for (std::size_t i = 0; i < points.size(); ++i) {
     const LasPoint& p = points[i];
     std::byte* at = records + i * length;
-    store(at, p.x);
-    store(at + 4, p.y);
-    store(at + 8, p.z);
-    store(at + 12, static_cast<std::uint16_t>(std::clamp(p.intensity, 0.0f, 65535.0f) + 0.5f));
+    std::memcpy(at, &p.x, 12);
+    store(at + 12, static_cast<std::uint16_t>(p.intensity == 0 ? 0.0f : std::clamp(p.intensity, 0.0f, 65535.0f) + 0.5f));
     at[14] = only_return;
     store(at + class_position, p.classification);
     store(at + 17, p.user_data);
-    std::memcpy(at + extra_position, p.normal, 6);
-    store(at + extra_position + 6, p.sigma_mm);
-    store(at + extra_position + 8, p.source);
+    std::memcpy(at + extra_position, p.normal, 10);   // with sigma and source
     store(at + extra_position + 10, p.feature);
     if (intensity) store(at + intensity->position, p.intensity);
   }

@@ -12,6 +12,11 @@ struct TileKey {
   auto operator<=>(const TileKey&) const = default;
 };
 
+/// A place on the lattice of 0.001 CRS units.
+struct LatticePoint {
+  std::int64_t x = 0, y = 0;
+};
+
 /// Half-open axis-aligned rectangle [min, max) in CRS units.
 struct Bounds2 {
   double min_x = 0, min_y = 0, max_x = 0, max_y = 0;

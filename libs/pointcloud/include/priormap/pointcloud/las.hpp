@@ -68,20 +68,21 @@ std::vector<std::byte> encode_las(const PointCloud& points, const LasWriteOption
 struct LasPoint {
   std::int32_t x = 0, y = 0, z = 0;
   std::int16_t normal[3] = {0, 0, 0};   ///< 1/32767; zero: unknown
+  std::uint16_t sigma_mm = unknown_sigma;
+  std::uint16_t source = 0;
   std::uint8_t classification = 0;
   std::uint8_t user_data = 0;
-  std::uint16_t source = 0;
-  std::uint16_t sigma_mm = unknown_sigma;
   std::uint32_t feature = PointCloud::no_feature;
   float intensity = 0;
 
   static constexpr std::uint16_t unknown_sigma = 65535;
 
+  static std::int16_t normal_steps(float component) {
+    const float steps = std::clamp(component, -1.0f, 1.0f) * 32767;
+    return std::int16_t(steps + std::copysign(0.5f, steps));   // signs are random: no branch
+  }
   void set_normal(const Eigen::Vector3f& unit) {
-    for (int a = 0; a < 3; ++a) {
-      const float steps = std::clamp(unit[a], -1.0f, 1.0f) * 32767;
-      normal[a] = std::int16_t(steps + std::copysign(0.5f, steps));   // signs are random: no branch
-    }
+    for (int a = 0; a < 3; ++a) normal[a] = normal_steps(unit[a]);
   }
   /// NaN: unknown.
   void set_sigma(float sigma_m) {

@@ -15,11 +15,6 @@
 
 namespace priormap {
 
-/// A place on the lattice of 0.001 CRS units.
-struct LatticePoint {
-  std::int64_t x = 0, y = 0;
-};
-
 /// Writes a prior directory, whole or not at all, with bounded memory: points are collected per tile, beyond `memory_bytes` on disk.
 /// Each tile is sorted (x, y, z, then the other columns), so the bytes depend on the set of points alone: not on order, threads or
 /// chunks. Two points of one source and one feature at one place are one point.

@@ -3,9 +3,10 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <priormap/geodesy/transformer.hpp>
-#include <priormap/pointcloud/point_cloud.hpp>
+#include <priormap/pointcloud/las.hpp>
 #include <priormap/sources/height_raster.hpp>
 
 namespace priormap {
@@ -34,11 +35,14 @@ class RasterPoints {
   RasterPoints& operator=(RasterPoints&&) noexcept;
   ~RasterPoints();
 
-  /// Calls visit(points) with the points inside of `area` (half-open, in the target CRS, whole thousandths): positions and normals, each
-  /// cloud within a few km of its origin, which lies at whole units. Where the axes of raster and target are parallel and the area is at most 512 cells wide
-  /// and high, they come sorted by x, then y, from cloud to cloud too, but for the walls: those come after the cells beside them, in clouds of their
-  /// own. Neighbouring areas are best read row by row.
-  void read(const Bounds2& area, const std::function<void(PointCloud& points)>& visit);
+  using Visit = std::function<void(std::vector<LasPoint>& points)>;
+
+  /// Calls visit(points) with the points inside of `area`, part by part: positions and normals. Where the raster is north-up in the target CRS and the area
+  /// at most 512 cells high, they come sorted by x, y, z, walls included, from part to part too. Neighbouring areas are best read row by row.
+  /// @param area    half-open, in the target CRS, whole thousandths, at most 2000 km wide and high. x and y count from its lower left corner, z is the
+  ///                height [0.001 units]
+  /// @param common  the other columns
+  void read(const Bounds2& area, const LasPoint& common, const Visit& visit);
   /// A rectangle of the target CRS with all points; nothing where the raster reaches beyond the domain of the CRS.
   const std::optional<Bounds2>& bounds() const;
   const CoordinateOperation& operation() const;
