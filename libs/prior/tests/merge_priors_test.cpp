@@ -86,18 +86,22 @@ void write_houses(const std::filesystem::path& directory, const PriorSource& sou
   writer.finish(2);
 }
 
-/// A raster of 1 m cells over [0, extent): heights by `surface`.
+/// A raster of 1 m cells over [0, extent): heights by `surface`, walls where it rises to the north by more than `least_wall_m`.
 template <class Surface>
 void write_raster(const std::filesystem::path& directory, const PriorSource& source, double extent, double tile_size, const Surface& surface,
                   const Box& box = everywhere, PointClass point_class = PointClass::unclassified, const std::string& crs = "",
-                  const Eigen::Vector2d& corner = {0, 0}) {
+                  const Eigen::Vector2d& corner = {0, 0}, double least_wall_m = 1e9) {
   PriorWriter writer(directory, test_manifest({source}, tile_size, crs), Overwrite::refuse);
   PointCloud cloud;
   cloud.origin = {corner.x(), corner.y(), 0};
   for (double x = 0.25; x < extent; x += 1)
     for (double y = 0.25; y < extent; y += 1)
-      if (x >= box[0] && x < box[2] && y >= box[1] && y < box[3])
-        append(cloud, {{corner.x() + x, corner.y() + y, surface(x, y)}, {0, 0, 1}, point_class}, PointCloud::no_feature);
+      if (x >= box[0] && x < box[2] && y >= box[1] && y < box[3]) {
+        const double here = surface(x, y), next = surface(x, y + 1);
+        append(cloud, {{corner.x() + x, corner.y() + y, here}, {0, 0, 1}, point_class}, PointCloud::no_feature);
+        for (double z = here; next - here > least_wall_m && z < next; z += 1)
+          append(cloud, {{corner.x() + x, corner.y() + y + 0.5, z}, {0, -1, 0}, point_class}, PointCloud::no_feature);
+      }
   writer.add(cloud);
   writer.finish(2);
 }
@@ -143,9 +147,12 @@ TEST(MergePriors, AnySplitOfACityIsTheCity) {
   const double extent = 300;
   const std::vector<House> houses = random_town(1, 60, extent);
   const PriorSource osm = source("osm", "osm"), dsm = source("dsm", "raster");
-  const auto surface = [](double x, double y) { return 100 + 3 * std::sin(x / 20) + (y > 150 ? 6 : 0); };
+  const auto surface = [](double x, double y) { return 100 + 3 * std::sin(x / 20) + (std::fmod(y, 30) > 15 ? 8 : 0); };
+  const auto write_dsm = [&](const std::string& name, double tile_size, const Box& box) {
+    write_raster(folder / name, dsm, extent, tile_size, surface, box, PointClass::unclassified, "", {0, 0}, 1.5);
+  };
   write_houses(folder / "osm", osm, houses, 200);
-  write_raster(folder / "dsm", dsm, extent, 200, surface);
+  write_dsm("dsm", 200, everywhere);
   merge({folder / "osm", folder / "dsm"}, folder / "whole");
   const std::string expected = sorted_bytes(folder / "whole");
 
@@ -159,7 +166,7 @@ TEST(MergePriors, AnySplitOfACityIsTheCity) {
     for (std::size_t b = 0; b < boxes.size(); ++b) {
       const std::string name = std::to_string(round) + "_" + std::to_string(b);
       write_houses(folder / ("osm" + name), osm, houses, tile_sizes[random() % 4], boxes[b]);
-      write_raster(folder / ("dsm" + name), dsm, extent, tile_sizes[random() % 4], surface, boxes[b]);
+      write_dsm("dsm" + name, tile_sizes[random() % 4], boxes[b]);
       osm_parts.push_back(folder / ("osm" + name));
       parts.push_back(folder / ("dsm" + name));
     }
@@ -294,6 +301,23 @@ TEST(MergePriors, AWallOfARasterStaysWhereNobodyKnowsItBetter) {
   EXPECT_TRUE(std::ranges::all_of(kept, [](const Eigen::Vector3d& p) { return p.x() == 30; }));
   EXPECT_EQ(report.walls_known_better, 100u);
   EXPECT_EQ(report.contradicted, 0u) << "a wall says nothing of a roof";
+}
+
+TEST(MergePriors, AHouseThatIsNotThereTakesNoWallOfARasterWithIt) {
+  const TestFolder folder;
+  const double wall_x = 7.5;   // of a house that OSM does not know, in the gap before one that is not there
+  write_houses(folder / "osm", source("osm", "osm"), {{"not there", 10, 0, 10, 100, 8, "default"}}, 16);
+  PriorWriter writer(folder / "dsm", test_manifest({source("dsm", "raster")}, 16), Overwrite::refuse);
+  PointCloud cloud;
+  for (double y = 0.5; y < 10; y += 1) {
+    for (double x = 0.5; x < 30; x += 1) append(cloud, {{x, y, x < wall_x ? 110.0 : 100.0}, {0, 0, 1}, PointClass::unclassified}, PointCloud::no_feature);
+    for (double z = 100.5; z < 110; z += 1) append(cloud, {{wall_x, y, z}, {1, 0, 0}, PointClass::unclassified}, PointCloud::no_feature);
+  }
+  writer.add(cloud);
+  writer.finish(1);
+  merge({folder / "osm", folder / "dsm"}, folder / "merged");
+  const auto kept = points_of(folder / "merged", "dsm");
+  EXPECT_EQ(std::ranges::count_if(kept, [&](const Eigen::Vector3d& p) { return p.x() == wall_x && p.z() > 104.5; }), 50) << "but for the lowest 4 m, the foot of the phantom's walls and 3 m";
 }
 
 TEST(MergePriors, GuessedHeightsGiveWayToWhatASurfaceRasterSaw) {
