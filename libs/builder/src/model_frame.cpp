@@ -80,20 +80,26 @@ ModelFrames::ModelFrames(const PriorOptions& options, const BuildingModel& first
 ModelFrames::Frame& ModelFrames::frame_of(const BuildingModel& model, const std::string& file) {
   if (const auto known = frames_.find(model.srs_name); known != frames_.end()) return known->second;
   const InputCrs input = resolve_input_crs(options_, declared_crs(model.srs_name, file, !options_.source_crs.empty()), file, events_);
-  Frame frame{northing_comes_first(model.srs_name, input.crs, first_point(model, file)), std::nullopt,
-              {input.crs.name(), input.assumed_vertical, {}}};
+  Frame frame{input.crs, std::nullopt, {input.crs.name(), input.assumed_vertical, {}}};
   Transformer transformer(input.crs, *prior_);
   frame.source.operation = transformer.operation();
   if (!transformer.is_identity()) frame.to_prior = std::move(transformer);
   return frames_.emplace(model.srs_name, std::move(frame)).first->second;
 }
 
+bool ModelFrames::swaps_axes(const BuildingModel& model, const std::string& file) {
+  const auto [place, is_new] = swaps_axes_.try_emplace({file, model.srs_name});
+  if (is_new) place->second = northing_comes_first(model.srs_name, frame_of(model, file).crs, first_point(model, file));
+  return place->second;
+}
+
 void ModelFrames::to_prior(BuildingModel& model, const std::string& file) {
   const Frame& frame = frame_of(model, file);
+  const bool swap_axes = swaps_axes(model, file);
   for (ModelPolygon& polygon : model.polygons) {
     bool good = true;
     for_each_ring(polygon.polygon, [&](Ring3& ring) {
-      if (frame.swap_axes) {
+      if (swap_axes) {
         for (Eigen::Vector3d& p : ring) p = swapped(p);
       }
       if (frame.to_prior) frame.to_prior->forward(ring);

@@ -2,6 +2,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <priormap/builder/prior_crs.hpp>
 #include <priormap/geodesy/transformer.hpp>
@@ -29,16 +30,18 @@ class ModelFrames {
 
  private:
   struct Frame {
-    bool swap_axes;
+    Crs crs;
     std::optional<Transformer> to_prior;   ///< none: the same CRS
     ModelSourceFrame source;
   };
   Frame& frame_of(const BuildingModel& model, const std::string& file);
+  bool swaps_axes(const BuildingModel& model, const std::string& file);
 
   const PriorOptions& options_;
   const Events& events_;
   std::optional<Crs> prior_;
-  std::map<std::string, Frame> frames_;   ///< by srsName
+  std::map<std::string, Frame> frames_;                                ///< by srsName
+  std::map<std::pair<std::string, std::string>, bool> swaps_axes_;     ///< by file and srsName: writers differ in the order under one name
 };
 
 }  // namespace priormap

@@ -60,3 +60,13 @@ for name in bangkok careless; do
   succeeds priorexport $name --sort -o $name.xyz
 done
 cmp bangkok.xyz careless.xyz || die "the only possible order is not taken"
+
+# Two writers of one city, one name, two orders: each file is taken by itself, whichever comes first.
+for first in plain careless_plain; do
+  other=$([ $first = plain ] && echo careless_plain || echo plain)
+  succeeds citygml2prior $first.gml $other.gml --quiet --crs EPSG:31468 --faces all -o both_$first
+  succeeds priorexport both_$first --sort -o both_$first.xyz
+  awk '!/^#/ { print $1, $2, $3 }' both_$first.xyz | sort -u >both
+  awk '!/^#/ { print $1, $2, $3 }' plain.xyz | sort -u >one
+  cmp one both || die "the order of axes goes over from file to file"
+done
