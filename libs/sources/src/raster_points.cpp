@@ -68,12 +68,12 @@ std::optional<Bounds2> target_bounds(const RasterFacts& facts, double target_cel
   return Bounds2{known.min().x(), known.min().y(), known.max().x(), known.max().y()};
 }
 
-/// Walls of a raster whose cells are fine enough to tell where they stand. @param cell_size  in the unit of the target CRS
-std::optional<StepWalls> step_walls(const Crs& target, double cell_size, const std::optional<double>& least_wall_m) {
-  constexpr double coarsest_m = 2.5, greatest_rise_m = 1;
-  const double cell_m = cell_size * target.horizontal_unit_m(), unit_m = std::abs(target.vertical_unit_m());
-  if (!least_wall_m || cell_m > coarsest_m) return std::nullopt;
-  return StepWalls{std::max(*least_wall_m, cell_m) / unit_m, std::min(cell_m, greatest_rise_m) / unit_m};
+/// Walls of heights that are near enough to each other to tell where they stand, and none of them interpolated. @param cell_size, spacing  of the raster and of its samples, in the unit of the target CRS
+std::optional<StepWalls> step_walls(const Crs& target, double cell_size, double spacing, const std::optional<double>& least_wall_m) {
+  constexpr double coarsest_m = 2.5, greatest_rise_m = 1, hair = 1e-3;
+  const double spacing_m = spacing * target.horizontal_unit_m(), unit_m = std::abs(target.vertical_unit_m());
+  if (!least_wall_m || spacing_m > coarsest_m || spacing < (1 - hair) * cell_size) return std::nullopt;   // between its cells a raster has slopes, no steps
+  return StepWalls{std::max(*least_wall_m, spacing_m) / unit_m, std::min(spacing_m, greatest_rise_m) / unit_m};
 }
 
 /// The raster's own cell centres.
@@ -111,7 +111,7 @@ class CellSampling {
     patch_width_ = is_identity() ? stripe_width : most_patch;
     patch_height_ = is_identity() ? grid_edge : most_patch;
     bounds_ = target_bounds(facts, cell_size_, transformer_);
-    walls_ = step_walls(target, cell_size_, least_wall_m);
+    walls_ = step_walls(target, cell_size_, cell_size_, least_wall_m);
   }
 
   bool is_identity() const { return transformer_.exact().is_identity(); }
@@ -213,7 +213,7 @@ class CellSampling {
 class LatticeSampling {
  public:
   LatticeSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, double spacing, const std::optional<double>& least_wall_m)
-      : raster_(HeightRaster::open(file, source, target)), transformer_(source, target, area_of(read_raster_facts(file), source)), spacing_(spacing), walls_(step_walls(target, spacing, least_wall_m)) {
+      : raster_(HeightRaster::open(file, source, target)), transformer_(source, target, area_of(read_raster_facts(file), source)), spacing_(spacing), walls_(step_walls(target, raster_.cell_size(), spacing, least_wall_m)) {
     InterpolatedTransformer horizontal(Transformer(source.horizontal(), target.horizontal()));
     bounds_ = target_bounds(read_raster_facts(file), raster_.cell_size(), horizontal);
   }

@@ -107,17 +107,28 @@ TEST_F(RasterPointsTest, a_house_gets_walls_halfway_between_the_cells_that_face_
   }
 }
 
-TEST_F(RasterPointsTest, low_steps_coarse_cells_and_bare_ground_have_no_walls) {
+TEST_F(RasterPointsTest, low_steps_and_coarse_cells_have_no_walls) {
   EXPECT_TRUE(walls_of(read(write({.value = house}), utm, utm)).empty());
   EXPECT_TRUE(walls_of(read(write({.value = house}), utm, utm, std::nullopt, 1e4, 10.5)).empty());
   EXPECT_TRUE(walls_of(read(write({.transform = {500000, 5, 0, 5000000, 0, -5}, .value = house}), utm, utm, std::nullopt, 1e4, 1.5)).empty());
+}
+
+TEST_F(RasterPointsTest, a_lattice_finer_than_the_raster_has_no_walls) {
+  const auto tower = [](double col, double row) { return col >= 3 && col < 6 && row >= 3 && row < 6 ? 60 : 0; };
+  const auto walls = [&](double cell, double spacing) {
+    return walls_of(read(write({.transform = {500000, cell, 0, 5000000, 0, -cell}, .value = tower}), utm, utm, spacing, 1e4, 1.5)).size();
+  };
+  EXPECT_EQ(walls(5, 0.5), 0u) << "60 m over 10 nodes is a slope, not ten walls";
+  EXPECT_EQ(walls(2, 1), 0u);
+  EXPECT_GT(walls(1, 1), 0u);
+  EXPECT_GT(walls(0.5, 2), 0u);
 }
 
 TEST_F(RasterPointsTest, walls_do_not_depend_on_the_areas_in_which_they_are_read) {
   const auto town = [](double col, double row) { return 5 * (std::fmod(col * 0.131, 1) > 0.5) + 4 * (std::fmod(row * 0.077, 1) > 0.4) + 0.01 * col; };
   const fs::path file = write({.width = 300, .height = 250, .crs = "EPSG:25832", .value = town});
   for (const char* target : {"EPSG:25832", "EPSG:25833"})
-    for (const std::optional<double>& spacing : {std::optional<double>(), std::optional(0.9)}) {
+    for (const std::optional<double>& spacing : {std::optional<double>(), std::optional(1.1)}) {
       const auto whole = walls_of(read(file, Crs::parse("EPSG:25832"), Crs::parse(target), spacing, 1e4, 1.5));
       const auto parts = walls_of(read(file, Crs::parse("EPSG:25832"), Crs::parse(target), spacing, 77, 1.5));
       EXPECT_GT(whole.size(), 10000u);

@@ -23,7 +23,7 @@ class RasterPoints {
   /// @param source   of the raster, with a vertical part where its heights are known
   /// @param target   projected
   /// @param least_wall_m  neighbouring cells whose heights differ by more are parted by a wall, one point a cell's edge and at most a metre, halfway between their centres;
-  ///                 none, or cells beyond 2.5 m: no walls
+  ///                 none, or cells beyond 2.5 m: no walls. With `spacing` that of the lattice counts, and one finer than the raster's cells has none
   /// @param spacing  edge of a square lattice of the target CRS on whose cells' centres heights are interpolated; none: the raster's own
   ///                 cell centres
   /// @throws IoError, FormatError, CrsError as HeightRaster
