@@ -255,6 +255,8 @@ PriorSource source_of(const HashedFile& file, const ModelSourceFrame& frame, con
   source.sigma_m = model_options.sigma_m;
   source.facts = {{"faces", model_options.faces}};
   if (model_options.lod > 0) source.facts.emplace_back("lod", std::to_string(model_options.lod));
+  if (!model_options.bridges) source.facts.emplace_back("bridges", "left out");
+  if (model_options.vegetation) source.facts.emplace_back("vegetation_sigma_m", (std::ostringstream() << model_options.vegetation_sigma_m).str());
   return source;
 }
 
@@ -296,11 +298,12 @@ ModelReport build_model_prior(const std::vector<std::filesystem::path>& inputs, 
   Sampling sampling(survey, sight ? &*sight : nullptr, *survey.frames(), prior_options, model_options, writer, threads);
   SightCounts points;
   for (std::size_t i = 0; i < with_models.size(); ++i) {
-    const std::size_t buildings_before = report.buildings, bridges_before = report.bridges;
+    const std::size_t buildings_before = report.buildings, bridges_before = report.bridges, plants_before = report.plants;
     const SightCounts points_here = sampling.read(*with_models[i], manifest.sources[i].id, static_cast<std::uint16_t>(i), report);
     points += points_here;
     manifest.sources[i].facts.emplace_back("buildings", std::to_string(report.buildings - buildings_before));
     if (report.bridges > bridges_before) manifest.sources[i].facts.emplace_back("bridges", std::to_string(report.bridges - bridges_before));
+    if (report.plants > plants_before) manifest.sources[i].facts.emplace_back("plants", std::to_string(report.plants - plants_before));
     std::ranges::move(sight_facts(model_options.sight, points_here), std::back_inserter(manifest.sources[i].facts));
   }
   if (report.buildings + report.bridges + report.plants + report.terrain_models == 0) {

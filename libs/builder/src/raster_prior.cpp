@@ -9,6 +9,7 @@
 #include <span>
 #include <sstream>
 #include <tuple>
+#include <utility>
 
 #include <priormap/builder/bbox_filter.hpp>
 #include <priormap/builder/prior_crs.hpp>
@@ -225,11 +226,17 @@ class TileSquares {
   std::size_t columns_ = 0, rows_ = 0;
 };
 
+struct PointCounts {
+  std::uint64_t all = 0, of_walls = 0;
+};
+
+bool is_of_wall(const LasPoint& p) { return p.normal[2] == 0 && (p.normal[0] != 0 || p.normal[1] != 0); }
+
 /// Square by square; tiles that no later raster reaches are closed at once. @param later  where these lie
-std::uint64_t write_raster(const AreaWorker& prototype, const TileSquares& squares, const std::vector<Bounds2>& later, const LasPoint& common,
+PointCounts write_raster(const AreaWorker& prototype, const TileSquares& squares, const std::vector<Bounds2>& later, const LasPoint& common,
                            PriorWriter& writer, int threads, const std::function<void(double)>& advance) {
   WorkerPool pool(prototype);
-  std::atomic<std::uint64_t> num_points = 0;
+  std::atomic<std::uint64_t> num_points = 0, num_of_walls = 0;
   std::atomic<std::size_t> done = 0;
   parallel_for(squares.size(), threads, [&](std::size_t i) {
     const TileSquares::Tiles tiles = squares.tiles(i);
@@ -238,6 +245,7 @@ std::uint64_t write_raster(const AreaWorker& prototype, const TileSquares& squar
       worker.read(area, common, [&](std::vector<LasPoint>& points) {
         writer.add(lattice_corner(area), points);
         num_points += points.size();
+        num_of_walls += static_cast<std::uint64_t>(std::ranges::count_if(points, is_of_wall));
       });
     });
     if (std::none_of(later.begin(), later.end(), [&](const Bounds2& other) { return overlap(area, other); }))
@@ -245,7 +253,7 @@ std::uint64_t write_raster(const AreaWorker& prototype, const TileSquares& squar
         for (key.y = tiles.first.y; key.y <= tiles.last.y; ++key.y) writer.close_tile(key);
     advance(static_cast<double>(++done) / static_cast<double>(squares.size()));
   });
-  return num_points;
+  return {num_points, num_of_walls};
 }
 
 /// Where the points of a raster lie in the prior. @throws CrsError when that is not known
@@ -266,6 +274,15 @@ PriorManifest manifest_of(const Crs& prior, const PriorOptions& options, const s
   manifest.sources = sources;
   manifest.generator = generator;
   return manifest;
+}
+
+std::vector<std::pair<std::string, std::string>> facts_of(const RasterInput& input, const RasterPriorOptions& options, const PointCounts& written) {
+  std::vector<std::pair<std::string, std::string>> facts{
+      {"kind", options.kind}, {"cells", std::to_string(input.facts.width) + " x " + std::to_string(input.facts.height)}, {"points", std::to_string(written.all)}};
+  if (!options.walls()) return facts;
+  facts.emplace_back("least_wall_m", (std::ostringstream() << *options.walls()).str());
+  facts.emplace_back("wall_points", std::to_string(written.of_walls));
+  return facts;
 }
 
 [[noreturn]] void refuse_empty(const std::vector<RasterInput>& inputs, const PriorOptions& options) {
@@ -313,9 +330,9 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
     common.source = static_cast<std::uint16_t>(i);
     common.set_sigma(static_cast<float>(*sources[i].sigma_m));
     const auto advance = [&](double fraction) { events.advance("reading rasters", (static_cast<double>(i) + fraction) / static_cast<double>(inputs.size())); };
-    const std::uint64_t written = write_raster(AreaWorker(points, bbox, preferred_of(inputs, i, prior)), squares, later, common, writer, threads, advance);
-    sources[i].facts = {{"kind", raster_options.kind}, {"cells", std::to_string(inputs[i].facts.width) + " x " + std::to_string(inputs[i].facts.height)}, {"points", std::to_string(written)}};
-    num_points += written;
+    const PointCounts written = write_raster(AreaWorker(points, bbox, preferred_of(inputs, i, prior)), squares, later, common, writer, threads, advance);
+    sources[i].facts = facts_of(inputs[i], raster_options, written);
+    num_points += written.all;
   }
   if (num_points == 0) refuse_empty(inputs, prior_options);
   writer.set_sources(sources);

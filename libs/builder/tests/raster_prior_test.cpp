@@ -95,6 +95,25 @@ TEST_F(RasterPriorTest, every_cell_is_a_point_with_class_source_and_sigma) {
   EXPECT_EQ(report_.manifest.sources[0].file_name, "dem.tif");
 }
 
+TEST_F(RasterPriorTest, a_surface_has_walls_and_bare_ground_has_none) {
+  const fs::path file = write({.width = 20, .height = 20, .transform = {691000, 1, 0, 5336000, 0, -1},
+                               .value = [](double col, double row) { return col >= 5 && col < 15 && row >= 5 && row < 15 ? 510 : 500; }}, "dem.tif");
+  const auto walls = [&](const std::string& name, const RasterPriorOptions& raster) {
+    const PointCloud points = points_of(build({file}, {}, name, 1, raster));
+    return std::ranges::count_if(points.normal, [](const Eigen::Vector3f& n) { return std::abs(n.z()) < 0.1f; });
+  };
+  const auto facts = [&] { return std::map<std::string, std::string>(report_.manifest.sources[0].facts.begin(), report_.manifest.sources[0].facts.end()); };
+  RasterPriorOptions surface, terrain, without;
+  terrain.kind = "terrain";
+  without.least_wall_m = 0;
+  EXPECT_EQ(walls("surface", surface), 40 * 10);
+  EXPECT_EQ(facts().at("wall_points"), "400");
+  EXPECT_EQ(facts().at("least_wall_m"), "1.5");
+  EXPECT_EQ(walls("terrain", terrain), 0);
+  EXPECT_EQ(walls("without", without), 0);
+  EXPECT_FALSE(facts().contains("wall_points"));
+}
+
 TEST_F(RasterPriorTest, sigma_is_the_users_else_the_rasters_own_else_that_of_airborne_lidar) {
   RasterFixture stated = hills(20, 20);
   stated.adjust = [](GDALDataset& d) { d.SetMetadataItem("DTED_VerticalAccuracy_ACC", "0004"); };

@@ -28,9 +28,11 @@ succeeds citygml2prior town.gml --vegetation -o green
 expect_in stdout "plants                      1"
 [ "$(classes green)" = "5 6 17 " ] || die "classes $(classes green)"
 succeeds priorinfo green --check
+grep -q '"plants": "1"' green/prior.json && grep -q '"vegetation_sigma_m": "1"' green/prior.json || die "prior.json does not tell of plants"
 
 succeeds citygml2prior town.gml --bridges=false -o houses
 [ "$(classes houses)" = "6 " ] || die "classes $(classes houses)"
+grep -q '"bridges": "left out"' houses/prior.json || die "prior.json does not tell that bridges were left out"
 
 # The street under a bridge and the ground under a tree stay when priors are merged; that under a house goes.
 {
