@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include <priormap/core/error.hpp>
 #include <priormap/evaluation/association.hpp>
@@ -15,6 +16,8 @@ namespace priormap {
 namespace {
 
 void require_comparable(const Trajectory& reference, const Trajectory& estimate, Alignment align) {
+  for (const auto& [trajectory, name] : {std::pair{&reference, "reference"}, {&estimate, "estimate"}})
+    if (trajectory->size() == 0) throw FormatError(std::string("the ") + name + " holds no poses");
   if (reference.crs.empty() == estimate.crs.empty() || align != Alignment::none) return;
   const std::string georeferenced = reference.crs.empty() ? "estimate" : "reference";
   throw CrsError("only the " + georeferenced + " is georeferenced (" + reference.crs + estimate.crs +

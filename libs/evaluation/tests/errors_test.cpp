@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "made_trajectories.hpp"
+#include <priormap/core/error.hpp>
 #include <priormap/evaluation/evaluate.hpp>
 
 namespace priormap {
@@ -124,6 +125,12 @@ TEST(EvaluateTrajectory, AlignsCountsAndWarns) {
   EXPECT_EQ(evaluation.pairs, 54u);
   EXPECT_NE(warning.find("1 of 55"), std::string::npos) << warning;
   EXPECT_NEAR(evaluation.ate.position_m.max, 0, 1e-9);
+}
+
+TEST(EvaluateTrajectory, RefusesATrajectoryWithoutPoses) {
+  const Trajectory reference = made::winding(60);
+  EXPECT_THROW(evaluate_trajectory(reference, {}, {}, {}), FormatError);
+  EXPECT_THROW(evaluate_trajectory({}, reference, {}, {}), FormatError);
 }
 
 TEST(EvaluateTrajectory, ReportsTheSameFiguresToPeopleAndMachines) {

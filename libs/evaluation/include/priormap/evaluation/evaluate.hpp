@@ -37,7 +37,7 @@ struct TrajectoryEvaluation {
 /// Compares an estimate with a reference: common frame, association, alignment, then the three measures.
 /// Warns when poses stay without a partner.
 /// @throws CrsError as to_common_frame, and when one side is georeferenced, the other is not and nothing is aligned;
-/// FormatError when no pose has a partner, when nothing is aligned and the two stay farther apart than the reference's way and 1 km, or as find_alignment.
+/// FormatError when one side holds no poses, when no pose has a partner, when nothing is aligned and the two stay farther apart than the reference's way and 1 km, or as find_alignment.
 TrajectoryEvaluation evaluate_trajectory(Trajectory reference, Trajectory estimate, const EvaluationOptions& options, const Events& events);
 
 /// For people: a few lines. For machines: one JSON object; lengths in m, angles in degrees.
