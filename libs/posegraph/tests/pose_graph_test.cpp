@@ -103,9 +103,14 @@ TEST(PoseGraph, MarginalsEqualThoseOfCeres) {
   const auto truth = drive(120);
   PoseGraph graph({.absolute_width = 0, .between_width = 0});
   for (const auto& T : truth) graph.add_pose(T);
-  for (std::size_t k = 1; k < truth.size(); ++k) graph.add_between(k - 1, k, truth[k - 1].inverse() * truth[k], random_information(random));
-  graph.add_between(3, 100, truth[3].inverse() * truth[100], random_information(random));  // a loop: more than a chain
-  for (std::size_t k = 0; k < truth.size(); k += 17) graph.add_absolute(k, truth[k], random_information(random));
+  std::vector<BetweenFactor> betweens;
+  std::vector<AbsoluteFactor> absolutes;
+  const auto between = [&](std::size_t a, std::size_t b) { betweens.push_back({a, b, truth[a].inverse() * truth[b], random_information(random)}); };
+  for (std::size_t k = 1; k < truth.size(); ++k) between(k - 1, k);
+  between(3, 100);  // a loop: more than a chain
+  for (std::size_t k = 0; k < truth.size(); k += 17) absolutes.push_back({k, truth[k], random_information(random)});
+  for (const auto& f : betweens) graph.add_between(f.a, f.b, f.T_a_b, f.information);
+  for (const auto& f : absolutes) graph.add_absolute(f.id, f.T_map_sensor, f.information);
   const auto covariances = graph.marginal_covariances();
 
   ceres::Problem problem;
@@ -115,10 +120,10 @@ TEST(PoseGraph, MarginalsEqualThoseOfCeres) {
     Eigen::Map<Eigen::Vector3d>{x[k].data() + 4} = truth[k].translation();
     problem.AddParameterBlock(x[k].data(), 7, new ceres::AutoDiffManifold<AutoManifold, 7, 6>);
   }
-  for (const auto& f : graph.between_factors())
+  for (const auto& f : betweens)
     problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AutoBetween, 6, 7, 7>(new AutoBetween(auto_between(f.T_a_b, f.information))),
                              nullptr, x[f.a].data(), x[f.b].data());
-  for (const auto& f : graph.absolute_factors())
+  for (const auto& f : absolutes)
     problem.AddResidualBlock(
         new ceres::AutoDiffCostFunction<AutoAbsolute, 6, 7>(new AutoAbsolute{auto_between(f.T_map_sensor, f.information)}), nullptr,
         x[f.id].data());

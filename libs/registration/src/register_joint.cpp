@@ -65,7 +65,6 @@ struct Linearization {
   Vector6d g = Vector6d::Zero();
   std::size_t correspondences = 0, inliers = 0;
   double inlier_squares = 0;
-  double scale = 0;
 };
 
 /// Turns sums in map axes into sensor axes.
@@ -114,7 +113,6 @@ class TargetState {
     table.accumulate(pose, source, c, data(x), data(y), data(z), float(std::pow(options.kernel_width * scale, 2)),
                      float(std::pow(options.kernel_width, 2)), sums);
     Linearization out = from_sums(sums, T.linear());
-    out.scale = scale;
     const double weight = target_.weight / std::pow(std::max(1.0, scale), 2);
     out.H *= weight;
     out.g *= weight;
@@ -222,8 +220,9 @@ double lever_arm(const Matrix6d& H) {
   return translation > 0 ? std::sqrt(H.topLeftCorner<3, 3>().trace() / translation) : 1.0;
 }
 
-/// Step towards the minimum, none in directions with less than `least` of the information of the strongest.
-Vector6d step_within_observed(const Matrix6d& H, const Vector6d& g, double least) {
+/// Step towards the minimum, none in directions of which next to nothing is known.
+Vector6d step_within_observed(const Matrix6d& H, const Vector6d& g) {
+  constexpr double least = 1e-7;   // of the information of the strongest
   const double arm = std::max(lever_arm(H), 1e-6);
   Vector6d unit;
   unit << Eigen::Vector3d::Constant(1.0 / arm), Eigen::Vector3d::Ones();
@@ -235,15 +234,12 @@ Vector6d step_within_observed(const Matrix6d& H, const Vector6d& g, double least
   return -(unit.asDiagonal() * (solver.eigenvectors() * inverse.asDiagonal() * solver.eigenvectors().transpose() * (unit.asDiagonal() * g)));
 }
 
-TargetResult result_of(const Linearization& l, const Eigen::Isometry3d& T, const Vector6d& last_step) {
+TargetResult result_of(const Linearization& l) {
   TargetResult out;
   out.num_correspondences = l.correspondences;
   out.num_inliers = l.inliers;
   out.inlier_rmse_m = l.inliers == 0 ? 0.0 : std::sqrt(l.inlier_squares / double(l.inliers));
-  out.scale = l.scale;
   out.information = l.H;
-  out.gradient = l.g + l.H * last_step;
-  out.T_map_scan = retract(T, step_within_observed(l.H, out.gradient, 1e-3));
   return out;
 }
 
@@ -281,7 +277,6 @@ JointResult JointRegistration::align(const SurfelCloud& scan, std::span<const Jo
   JointResult result;
   result.T_map_scan = guess;
   std::vector<Linearization> parts(targets.size());
-  Vector6d step = Vector6d::Zero();
   while (!result.converged && result.iterations < options_.max_iterations) {
     Matrix6d H = Matrix6d::Zero();
     Vector6d g = Vector6d::Zero();
@@ -297,13 +292,13 @@ JointResult JointRegistration::align(const SurfelCloud& scan, std::span<const Jo
       g += prior->information * local_coordinates(prior->T_map_scan, result.T_map_scan);
     }
     result.information = H;
-    step = step_within_observed(H, g, 1e-7);
+    const Vector6d step = step_within_observed(H, g);
     if (step.isZero(0)) break;
     result.T_map_scan = retract(result.T_map_scan, step);
     result.converged = least_scale == options_.min_scale && step.tail<3>().norm() < options_.translation_epsilon_m && step.head<3>().norm() < options_.rotation_epsilon_rad;
     ++result.iterations;
   }
-  for (const Linearization& part : parts) result.targets.push_back(result_of(part, result.T_map_scan, step));
+  for (const Linearization& part : parts) result.targets.push_back(result_of(part));
   return result;
 }
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <priormap/core/error.hpp>
 #include <priormap/registration/scan_reducer.hpp>
-#include <priormap/registration/voxel_index.hpp>
 
 namespace priormap {
 namespace {
@@ -122,22 +121,6 @@ SurfelCloud ScanReducer::reduce(const PointCloud& scan) {
   out.origin = scan.origin;
   out.surfels.reserve(used_.size());
   for (const std::uint32_t slot : used_) out.surfels.push_back(surfel_of(table_[slot].sums, voxel_m_ * centre_of(table_[slot].key), timed));
-  return out;
-}
-
-SurfelCloud coarsen(const SurfelCloud& cloud, double voxel_m) {
-  if (!(voxel_m > 0)) throw UsageError("scan reduction: the voxel must be above 0 m");
-  SurfelCloud out;
-  out.origin = cloud.origin;
-  VoxelIndex index;
-  const float per_metre = float(1.0 / voxel_m);
-  for (const Surfel& s : cloud.surfels) {
-    const std::uint32_t number = index.find_or_add((s.mean * per_metre).array().floor().cast<int>());
-    if (number == out.surfels.size())
-      out.surfels.push_back(s);
-    else
-      merge(out.surfels[number], s);
-  }
   return out;
 }
 

@@ -102,10 +102,6 @@ class PoseGraph {
 
   std::size_t size() const { return poses_.size(); }
   const Eigen::Isometry3d& pose(PoseId id) const { return poses_.at(id); }
-  void set_pose(PoseId id, const Eigen::Isometry3d& T_map_sensor) { poses_.at(id) = T_map_sensor; }
-  std::span<const AbsoluteFactor> absolute_factors() const { return absolute_; }
-  std::span<const BetweenFactor> between_factors() const { return between_; }
-  std::span<const PieceFactor> piece_factors() const { return piece_factors_; }
   std::span<const Piece> pieces() const { return pieces_; }
 
   /// Weight in (0, 1] that the kernel gives each factor at the present poses (Tukey: 0 for an outlier).

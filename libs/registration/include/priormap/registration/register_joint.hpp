@@ -64,11 +64,7 @@ struct TargetResult {
   std::size_t num_correspondences = 0;
   std::size_t num_inliers = 0;               ///< whitened residual below kernel_width: what the stated sigmas explain
   double inlier_rmse_m = 0;
-  double scale = 0;                          ///< robust standard deviation of the whitened residuals, at least min_scale; above 1: more than stated
-  Matrix6d information = Matrix6d::Zero();   ///< J^T W J of this target alone, divided by scale^2 where that is above 1, and times its weight
-  Vector6d gradient = Vector6d::Zero();      ///< of half the cost: what this target alone would move is -information^-1 gradient
-  /// The pose that this target alone prefers, to first order: with `information` it makes a factor of a pose graph. Directions that it does not observe stay at the joint pose.
-  Eigen::Isometry3d T_map_scan = Eigen::Isometry3d::Identity();
+  Matrix6d information = Matrix6d::Zero();   ///< J^T W J of this target alone, times its weight, and divided by the square of the residuals' robust standard deviation where they scatter more than stated
   double inlier_share() const { return num_correspondences == 0 ? 0.0 : double(num_inliers) / double(num_correspondences); }
 };
 

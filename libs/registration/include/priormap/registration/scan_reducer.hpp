@@ -32,7 +32,4 @@ class ScanReducer {
   std::vector<std::uint32_t> used_;  // slots in order of first sight
 };
 
-/// Surfels merged by voxels of a coarser grid (means and covariances of all points behind them), in order of first sight.
-SurfelCloud coarsen(const SurfelCloud& cloud, double voxel_m);
-
 }  // namespace priormap
