@@ -6,6 +6,7 @@
 
 #include "confidence.hpp"
 #include "prior_pieces.hpp"
+#include "prior_surfels.hpp"
 #include "sweep_motion.hpp"
 
 namespace priormap {
@@ -37,15 +38,20 @@ std::vector<Keyframe> keyframes_of(const std::vector<ScanRecord>& records, const
 /// Compares scans with the prior where they are thought to have been taken.
 class PriorComparison {
  public:
-  PriorComparison(const NearTiles& prior, const ReadScan& read, const JointMethodOptions& options)
-      : prior_(prior, SurfelMap(options.tracking.prior)), read_(read), reducer_(options.reduce_m), registration_(one_step(options.tracking.registration)) {}
+  PriorComparison(const NearTiles& prior, const PiecesOfPrior& pieces, const ReadScan& read, const JointMethodOptions& options)
+      : prior_(prior, PriorSurfels(options.tracking.prior), [&pieces](PatchCloud& patches) { pieces.move_buildings(patches); }), read_(read), reducer_(options.reduce_m), registration_(one_step(options.tracking.registration)) {}
 
   std::vector<PlaneMatch> at(const ScanRecord& record, const Eigen::Isometry3d& T_map_sensor) {
     SurfelCloud surfels = reducer_.reduce(read_(record.index).points);
     undo_motion(surfels, record.odometry.velocity);
-    const JointTarget target{&prior_.around(T_map_sensor.translation()), 0.0, 1.0};
-    registration_.align(surfels, {&target, 1}, T_map_sensor);
-    return registration_.plane_matches(0);
+    const auto targets = prior_.around(T_map_sensor.translation()).targets(0.0, PriorSurfels::unweighted);
+    registration_.align(surfels, targets, T_map_sensor);
+    std::vector<PlaneMatch> matches;
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+      const std::vector<PlaneMatch> layer = registration_.plane_matches(t);
+      matches.insert(matches.end(), layer.begin(), layer.end());
+    }
+    return matches;
   }
 
  private:
@@ -53,7 +59,7 @@ class PriorComparison {
     options.max_iterations = 1;
     return options;
   }
-  PriorWindow<SurfelMap> prior_;
+  PriorWindow<PriorSurfels> prior_;
   const ReadScan& read_;
   ScanReducer reducer_;
   JointRegistration registration_;
@@ -146,14 +152,21 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
   PieceSigmas sigmas = stated;
   Marginals marginals;
   std::vector<double> weights;
+  const auto compare = [&](auto&& take) {
+    PriorComparison comparison(*prior, pieces, read_again, options);
+    for (std::size_t k = 0; k < graph.size(); ++k) take(k, graph.pose(k), comparison.at(graph.record(k), graph.pose(k)));
+  };
+  if (prior) {
+    compare([&](std::size_t, const Eigen::Isometry3d& T, const std::vector<PlaneMatch>& matches) { pieces.vote(T, matches); });
+    pieces.take_likeliest_offsets();
+  }
   for (int pass = 0; pass < (prior ? how.passes : 1); ++pass) {
     if (prior) {
       pieces.clear_matches();
-      PriorComparison comparison(*prior, read_again, options);
-      // Coarse to fine: until the offsets are known, what strays is not yet an outlier.
+      // Coarse to fine: until height and tilt are known, what strays is not yet an outlier.
       const double coarse = pass == 0 ? 3 : 1;
-      for (std::size_t k = 0; k < graph.size(); ++k)
-        pieces.add(k, graph.pose(k), comparison.at(graph.record(k), graph.pose(k)), {how.surface_sigma_m, coarse * how.kernel_width});
+      const PieceNoise noise{how.surface_sigma_m, coarse * how.kernel_width, coarse * how.ground_kernel_width};
+      compare([&](std::size_t k, const Eigen::Isometry3d& T, const std::vector<PlaneMatch>& matches) { pieces.add(k, T, matches, noise); });
     }
     marginals = graph.estimate(pieces, sigmas, weights);
     if (pass + 1 < how.passes) sigmas = pieces.estimated_sigmas(stated, sigmas, marginals.pieces, weights);

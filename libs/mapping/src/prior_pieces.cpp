@@ -4,15 +4,26 @@
 #include <cmath>
 #include <optional>
 
+#include "street_view.hpp"
+
 namespace priormap {
 namespace {
 
-/// What lies flat above the sensor is no ground but a roof, and roofs are not heard: their heights and shapes in a prior are often guessed, and all to one side.
-std::optional<PieceKind> kind_of(const PlaneMatch& match, double sensor_z) {
+/// A surfel that does not lie in the plane (hedges and cars on the ground, the ground before a wall) tells nothing.
+std::optional<PieceKind> kind_of(const PlaneMatch& match, const Eigen::Vector3d& sensor) {
+  constexpr double most_spread_m = 0.15;
+  if (match.scan_variance_m2 > most_spread_m * most_spread_m) return std::nullopt;
   const double up = std::abs(match.normal.z());
-  if (up < 0.3) return match.feature == PointCloud::no_feature ? PieceKind::wall : PieceKind::building;
-  if (match.p_map.z() > sensor_z) return std::nullopt;
+  if (up < steepest_roof) return match.feature == PointCloud::no_feature ? PieceKind::wall : PieceKind::building;
+  if (is_above_street(match.p_map - sensor)) return std::nullopt;
   return up < 0.9 ? PieceKind::slope : PieceKind::ground;
+}
+
+/// Ground tells of height and tilt. What its slopes tell of the place is little, and errors that hang together over many pieces outweigh it.
+PlaneMatch levelled(PlaneMatch match) {
+  match.residual_m /= match.normal.z();
+  match.normal = Eigen::Vector3d::UnitZ();
+  return match;
 }
 
 PieceKey key_of(const PlaneMatch& match, PieceKind kind, double piece_m) {
@@ -23,17 +34,46 @@ PieceKey key_of(const PlaneMatch& match, PieceKind kind, double piece_m) {
 
 }  // namespace
 
-PieceEquations equations_of(const PlaneMatch& match, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, const PieceNoise& noise) {
+PieceEquations equations_of(const PlaneMatch& match, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, double surface_sigma_m, double kernel_width) {
   const Eigen::Matrix3d R = T_map_sensor.linear();
   const Eigen::Vector3d n_sensor = R.transpose() * match.normal;
   const Eigen::Vector3d p_sensor = R.transpose() * (match.p_map - T_map_sensor.translation());
   Vector9d J;  // the residual grows with the point along the normal and shrinks when the piece moves along it
   J << p_sensor.cross(n_sensor), n_sensor, -match.normal;
-  const double variance = match.scan_variance_m2 + noise.surface_sigma_m * noise.surface_sigma_m;
+  const double variance = match.scan_variance_m2 + surface_sigma_m * surface_sigma_m;
   const double left = match.residual_m - match.normal.dot(offset_m);
-  const double root = 1 / (1 + left * left / (variance * noise.kernel_width * noise.kernel_width));
+  const double root = 1 / (1 + left * left / (variance * kernel_width * kernel_width));
   const double weight = root * root / variance;
   return {(weight * J * J.transpose()).cast<float>(), (weight * match.residual_m * J).cast<float>()};
+}
+
+std::optional<PieceId> PiecesOfPrior::piece_of(const PlaneMatch& match, const Eigen::Vector3d& sensor) {
+  if ((match.p_map - sensor).squaredNorm() > range_m_ * range_m_) return std::nullopt;
+  const auto kind = kind_of(match, sensor);
+  if (!kind) return std::nullopt;
+  const auto [found, is_new] = ids_.try_emplace(key_of(match, *kind, piece_m_), pieces_.size());
+  if (is_new) pieces_.push_back({*kind});
+  return found->second;
+}
+
+void PiecesOfPrior::vote(const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches) {
+  for (const PlaneMatch& match : matches) {
+    if (std::abs(match.normal.z()) >= steepest_roof) continue;
+    if (const auto id = piece_of(match, T_map_sensor.translation())) votes_[*id].add(match);
+  }
+}
+
+void PiecesOfPrior::take_likeliest_offsets() {
+  for (const auto& [id, votes] : votes_) pieces_[id].offset_m = votes.likeliest();
+  votes_.clear();
+}
+
+void PiecesOfPrior::move_buildings(PatchCloud& patches) const {
+  for (SurfacePatch& patch : patches.patches) {
+    if (patch.feature == PointCloud::no_feature || std::abs(patch.normal.z()) >= steepest_roof) continue;
+    const auto found = ids_.find({patch.feature, 0, 0, PieceKind::building});
+    if (found != ids_.end()) patch.mean += pieces_[found->second].offset_m.cast<float>();
+  }
 }
 
 void PiecesOfPrior::clear_matches() {
@@ -44,13 +84,14 @@ void PiecesOfPrior::clear_matches() {
 void PiecesOfPrior::add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches, const PieceNoise& noise) {
   std::map<PieceId, PieceEquations> equations;
   for (const PlaneMatch& match : matches) {
-    if ((match.p_map - T_map_sensor.translation()).squaredNorm() > range_m_ * range_m_) continue;
-    const auto kind = kind_of(match, T_map_sensor.translation().z());
-    if (!kind) continue;
-    const auto [found, is_new] = ids_.try_emplace(key_of(match, *kind, piece_m_), pieces_.size());
-    if (is_new) pieces_.push_back({found->first.kind});
-    const PieceEquations one = equations_of(match, T_map_sensor, pieces_[found->second].offset_m, noise);
-    PieceEquations& sum = equations[found->second];
+    const auto id = piece_of(match, T_map_sensor.translation());
+    if (!id) continue;
+    const Piece& piece = pieces_[*id];
+    const bool ground = piece.kind == PieceKind::ground;
+    PlaneMatch heard = ground ? levelled(match) : match;
+    if (piece.kind == PieceKind::building) heard.residual_m += heard.normal.dot(piece.offset_m);   // compared where it had been moved to
+    const PieceEquations one = equations_of(heard, T_map_sensor, piece.offset_m, noise.surface_sigma_m, ground ? noise.ground_kernel_width : noise.kernel_width);
+    PieceEquations& sum = equations[*id];
     sum.H += one.H;
     sum.g += one.g;
   }

@@ -3,10 +3,13 @@
 #include <array>
 #include <compare>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include <priormap/posegraph/pose_graph.hpp>
 #include <priormap/registration/register_joint.hpp>
+
+#include "offset_votes.hpp"
 
 namespace priormap {
 
@@ -29,14 +32,15 @@ struct PieceKey {
   auto operator<=>(const PieceKey&) const = default;
 };
 
-/// How far a real surface strays from that of its piece of the prior, the piece's offset apart.
+/// How far real surfaces stray from those of their piece of the prior, the piece's offset apart.
 struct PieceNoise {
   double surface_sigma_m;
-  double kernel_width;   ///< Geman-McClure, in standard deviations
+  double kernel_width;          ///< Geman-McClure, in standard deviations
+  double ground_kernel_width;   ///< the same on the ground, where what does not belong to it is all to one side
 };
 
 /// Normal equations of one comparison. @param offset_m  of the piece, as far as it is known: what strays from there is an outlier
-PieceEquations equations_of(const PlaneMatch& match, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, const PieceNoise& noise);
+PieceEquations equations_of(const PlaneMatch& match, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, double surface_sigma_m, double kernel_width);
 
 /// The pieces of the prior along a drive, and what the scans say of them. A piece may lie off as a whole. Its errors are the same in all scans that see it: it
 /// counts once, however many there are.
@@ -44,8 +48,14 @@ class PiecesOfPrior {
  public:
   PiecesOfPrior(double piece_m, double range_m) : piece_m_(piece_m), range_m_(range_m) {}
 
+  /// First: where the walls of each piece seem to lie, by comparisons with the prior as it is.
+  void vote(const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches);
+  void take_likeliest_offsets();
+  /// Moves buildings to where they are now thought to be: the prior to compare with next.
+  void move_buildings(PatchCloud& patches) const;
+
   void clear_matches();
-  /// Takes the comparisons that a scan at `T_map_sensor`, pose `k` of the graph, gave.
+  /// Takes the comparisons with the prior moved that a scan at `T_map_sensor`, pose `k` of the graph, gave.
   void add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches, const PieceNoise& noise);
   void add_to(PoseGraph& graph, const PieceSigmas& sigmas) const;
   void take_offsets(const PoseGraph& graph);
@@ -63,9 +73,12 @@ class PiecesOfPrior {
     Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
     std::size_t times_seen = 0;
   };
+  /// The piece that a comparison is with; none where it tells nothing.
+  std::optional<PieceId> piece_of(const PlaneMatch& match, const Eigen::Vector3d& sensor);
   double piece_m_, range_m_;
   std::map<PieceKey, PieceId> ids_;
   std::vector<Piece> pieces_;
+  std::map<PieceId, OffsetVotes> votes_;
   std::vector<PieceFactor> factors_;
 };
 

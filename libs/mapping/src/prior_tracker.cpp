@@ -2,22 +2,23 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "confidence.hpp"
+#include "street_view.hpp"
 
 namespace priormap {
 namespace {
 
 double translation_information(const Matrix6d& information) { return information.bottomRightCorner<3, 3>().trace(); }
 
-/// The scan without roofs: level or sloping planes above the sensor. Their heights in a prior are often guessed, and would lift the pose where no ground holds it.
+/// The scan without roofs: they would lift the pose where no ground holds it.
 SurfelCloud without_roofs(const SurfelCloud& scan, const Eigen::Matrix3d& R_map_sensor, double voxel_m) {
-  constexpr float level = 0.3f;
-  const Eigen::Vector3f up = R_map_sensor.row(2).transpose().cast<float>();
+  const Eigen::Matrix3f R = R_map_sensor.cast<float>();
   SurfelCloud kept{scan.origin, {}};
   kept.surfels.reserve(scan.size());
   for (const Surfel& surfel : scan.surfels)
-    if (up.dot(surfel.mean) <= 0 || std::abs(up.dot(normal_of(surfel, voxel_m))) < level) kept.surfels.push_back(surfel);
+    if (!is_above_street((R * surfel.mean).cast<double>()) || std::abs(R.row(2).dot(normal_of(surfel, voxel_m))) < steepest_roof) kept.surfels.push_back(surfel);
   return kept;
 }
 
@@ -25,7 +26,7 @@ SurfelCloud without_roofs(const SurfelCloud& scan, const Eigen::Matrix3d& R_map_
 
 PriorTracker::PriorTracker(const TrackingOptions& options, double scan_voxel_m, const std::optional<NearTiles>& prior, const Eigen::Isometry3d& T_map_first)
     : options_(options), scan_voxel_m_(scan_voxel_m), registration_(options.registration), T_map_odom_(T_map_first) {
-  if (prior) prior_.emplace(*prior, SurfelMap(options.prior));
+  if (prior) prior_.emplace(*prior, PriorSurfels(options.prior));
 }
 
 Matrix6d PriorTracker::predicted_covariance(const Eigen::Isometry3d& T_odom_sensor) const {
@@ -36,21 +37,21 @@ Matrix6d PriorTracker::predicted_covariance(const Eigen::Isometry3d& T_odom_sens
 }
 
 /// The pose given by the user is left for another only if the scans of the first stretch fit clearly better there.
-void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const SurfelMap& map) {
+void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
   constexpr double clear_gain = 0.02;   // a surfel
-  const JointTarget target{&map, options_.prior_sigma_m, prior_weight_}, unweighted{&map, options_.prior_sigma_m, 1};
+  const auto targets = map.targets(options_.prior_sigma_m, prior_weights_), to_compare = map.targets(options_.prior_sigma_m, PriorSurfels::unweighted);
   if (hypotheses_.empty()) {
     const Eigen::Isometry3d T_start = T_map_odom_ * T_odom_sensor;
-    const Eigen::Isometry3d T_given = registration_.align(scan, {&target, 1}, T_start, PosePrior{T_start, start_information(T_start)}).T_map_scan;
+    const Eigen::Isometry3d T_given = registration_.align(scan, targets, T_start, PosePrior{T_start, start_information(T_start)}).T_map_scan;
     hypotheses_.push_back({T_given * T_odom_sensor.inverse(), 0});
-    for (const ScoredResult& other : registration_.search(scan, {&target, 1}, T_given, options_.search))
+    for (const ScoredResult& other : registration_.search(scan, targets, T_given, options_.search))
       hypotheses_.push_back({other.match.T_map_scan * T_odom_sensor.inverse(), 0});
   }
   const Matrix6d information = (Vector6d() << Eigen::Vector3d::Constant(1e4), Eigen::Vector3d::Constant(10)).finished().asDiagonal();
   for (Hypothesis& h : hypotheses_) {
     const Eigen::Isometry3d T = h.T_map_odom * T_odom_sensor;
-    const Eigen::Isometry3d T_aligned = registration_.align(scan, {&target, 1}, T, PosePrior{T, information}).T_map_scan;
-    h.score += registration_.score(scan, {&unweighted, 1}, T_aligned, options_.search.sigma_m);
+    const Eigen::Isometry3d T_aligned = registration_.align(scan, targets, T, PosePrior{T, information}).T_map_scan;
+    h.score += registration_.score(scan, to_compare, T_aligned, options_.search.sigma_m);
     h.T_map_odom = T_aligned * T_odom_sensor.inverse();
   }
   num_surfels_heard_ += scan.size();
@@ -62,7 +63,7 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
 
 void PriorTracker::begin_anew() {
   T_odom_last_.reset();
-  prior_weight_ = 1;
+  prior_weights_ = PriorSurfels::unweighted;
   hypotheses_.clear();
   num_heard_ = 0;
   num_surfels_heard_ = 0;
@@ -70,11 +71,30 @@ void PriorTracker::begin_anew() {
 
 void PriorTracker::exchange(StateArchive& archive) {
   if (prior_) archive(*prior_);
-  archive(T_map_odom_, T_odom_last_, covariance_, prior_weight_, hypotheses_, num_heard_, num_surfels_heard_);
+  archive(T_map_odom_, T_odom_last_, covariance_, prior_weights_, hypotheses_, num_heard_, num_surfels_heard_);
 }
 
 bool PriorTracker::asks(const Eigen::Isometry3d& T_odom_sensor) const {
   return prior_ && !(T_odom_last_ && (T_odom_sensor.translation() - T_odom_last_->translation()).norm() < options_.keyframe_m);
+}
+
+PriorMatch PriorTracker::word_of(const JointResult& match, std::span<const JointTarget> targets, std::size_t num_surfels) const {
+  PriorMatch found;
+  MatchFigures& figures = found.figures;
+  double squares = 0;
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const TargetResult& layer = match.targets[i];
+    figures.num_correspondences += layer.num_correspondences;
+    figures.num_inliers += layer.num_inliers;
+    squares += static_cast<double>(layer.num_inliers) * layer.inlier_rmse_m * layer.inlier_rmse_m;
+    found.information += layer.information / targets[i].weight;
+  }
+  figures.inlier_rmse_m = figures.num_inliers ? std::sqrt(squares / static_cast<double>(figures.num_inliers)) : 0;
+  figures.iterations = match.iterations;
+  figures.converged = match.converged;
+  found.share = std::min(1.0, static_cast<double>(figures.num_correspondences) / static_cast<double>(num_surfels));
+  figures.accepted = found.share > options_.min_share && static_cast<double>(figures.num_inliers) > options_.min_inlier_share * static_cast<double>(figures.num_correspondences);
+  return found;
 }
 
 std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, const Eigen::Isometry3d& T_odom_sensor) {
@@ -82,23 +102,19 @@ std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, co
   const Eigen::Isometry3d guess = T_map_odom_ * T_odom_sensor;
   const SurfelCloud scan = without_roofs(whole_scan, guess.linear(), scan_voxel_m_);
   if (scan.empty()) return std::nullopt;
-  const SurfelMap& map = prior_->around(guess.translation());
-  JointTarget target{&map, options_.prior_sigma_m, prior_weight_};
+  const PriorSurfels& map = prior_->around(guess.translation());
+  const auto targets = map.targets(options_.prior_sigma_m, prior_weights_);
   if (num_heard_ < options_.start_keyframes) compare_hypotheses(scan, T_odom_sensor, map);
   const Eigen::Isometry3d T_pred = T_map_odom_ * T_odom_sensor;
   JointResult match;
   if (T_odom_last_) {
     const Matrix6d information = predicted_covariance(T_odom_sensor).inverse();
-    match = registration_.align(scan, {&target, 1}, T_pred, PosePrior{T_pred, 0.5 * (information + information.transpose())});
+    match = registration_.align(scan, targets, T_pred, PosePrior{T_pred, 0.5 * (information + information.transpose())});
   } else {
-    match = registration_.align(scan, {&target, 1}, T_pred, PosePrior{guess, start_information(guess)});
+    match = registration_.align(scan, targets, T_pred, PosePrior{guess, start_information(guess)});
   }
-  const TargetResult& to_prior = match.targets.front();
-  PriorMatch found;
-  found.share = static_cast<double>(to_prior.num_correspondences) / static_cast<double>(scan.size());
-  found.information = to_prior.information / target.weight;
-  const bool accepted = found.share > options_.min_share && to_prior.inlier_share() > options_.min_inlier_share;
-  found.figures = {to_prior.num_correspondences, to_prior.num_inliers, match.iterations, to_prior.inlier_rmse_m, match.converged, accepted};
+  const PriorMatch found = word_of(match, targets, scan.size());
+  const bool accepted = found.figures.accepted;
   if (accepted) {
     covariance_ = covariance_of(match.information);
     T_map_odom_ = match.T_map_scan * T_odom_sensor.inverse();
@@ -106,7 +122,8 @@ std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, co
     covariance_ = T_odom_last_ ? predicted_covariance(T_odom_sensor) : covariance_of(Matrix6d::Zero());
   }
   T_odom_last_ = T_odom_sensor;
-  prior_weight_ = 1 / (1 + translation_information(found.information) * options_.prior_floor_m * options_.prior_floor_m / 3);
+  for (std::size_t i = 0; i < prior_weights_.size(); ++i)
+    prior_weights_[i] = 1 / (1 + translation_information(match.targets[i].information / targets[i].weight) * options_.prior_floor_m * options_.prior_floor_m / 3);
   return found;
 }
 

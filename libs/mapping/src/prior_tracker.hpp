@@ -1,12 +1,15 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <priormap/mapping/mapped_scan.hpp>
 #include <priormap/mapping/mapper_options.hpp>
 #include <priormap/mapping/prior_window.hpp>
 #include <priormap/registration/register_joint.hpp>
+
+#include "prior_surfels.hpp"
 
 namespace priormap {
 
@@ -38,18 +41,19 @@ class PriorTracker {
     Eigen::Isometry3d T_map_odom;
     double score;
   };
-  void compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const SurfelMap& map);
+  void compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
 
+  PriorMatch word_of(const JointResult& match, std::span<const JointTarget> targets, std::size_t num_surfels) const;
   Matrix6d predicted_covariance(const Eigen::Isometry3d& T_odom_sensor) const;
 
   TrackingOptions options_;
   double scan_voxel_m_;
-  std::optional<PriorWindow<SurfelMap>> prior_;
+  std::optional<PriorWindow<PriorSurfels>> prior_;
   JointRegistration registration_;
   Eigen::Isometry3d T_map_odom_;
   std::optional<Eigen::Isometry3d> T_odom_last_;   // where the prior was asked last
   Matrix6d covariance_ = Matrix6d::Zero();         // of T_map_odom * T_odom_last, tangent in sensor axes
-  double prior_weight_ = 1;
+  PriorSurfels::Weights prior_weights_ = PriorSurfels::unweighted;
   std::vector<Hypothesis> hypotheses_;             // where the drive may have begun; the first is the one given
   int num_heard_ = 0;
   std::size_t num_surfels_heard_ = 0;

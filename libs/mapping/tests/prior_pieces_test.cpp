@@ -11,7 +11,7 @@ Eigen::Isometry3d pose(double x, double y, double yaw) {
   return T;
 }
 
-constexpr PieceNoise noise{0.1, 1e6};   // no kernel
+constexpr PieceNoise noise{0.1, 1e6, 1e6};   // no kernel
 
 TEST(PriorPieces, TheEquationsAreTheDerivativeOfTheSquaredResidual) {
   const Eigen::Isometry3d T = pose(3, 4, 0.7);
@@ -22,7 +22,7 @@ TEST(PriorPieces, TheEquationsAreTheDerivativeOfTheSquaredResidual) {
     const double r = normal.dot(retract(T, z.head<6>()) * p_sensor - on_plane - z.tail<3>());
     return 0.5 * r * r / (0.1 * 0.1 + 0.01);
   };
-  const PieceEquations e = equations_of(match, T, Eigen::Vector3d::Zero(), noise);
+  const PieceEquations e = equations_of(match, T, Eigen::Vector3d::Zero(), 0.1, 1e6);
   constexpr double step = 1e-5;
   for (int i = 0; i < 9; ++i) {
     const Vector9d d = step * Vector9d::Unit(i);
@@ -33,9 +33,8 @@ TEST(PriorPieces, TheEquationsAreTheDerivativeOfTheSquaredResidual) {
 TEST(PriorPieces, WhatStraysFromTheKnownOffsetIsAnOutlier) {
   const Eigen::Isometry3d T = pose(0, 0, 0);
   const PlaneMatch match{{10, 0, 2}, {1, 0, 0}, 1.0, 0};
-  const PieceNoise narrow{0.1, 3};
-  EXPECT_LT(equations_of(match, T, {0, 0, 0}, narrow).H(3, 3), 2);
-  EXPECT_NEAR(equations_of(match, T, {1, 0, 0}, narrow).H(3, 3), 100, 1e-3);
+  EXPECT_LT(equations_of(match, T, {0, 0, 0}, 0.1, 3).H(3, 3), 2);
+  EXPECT_NEAR(equations_of(match, T, {1, 0, 0}, 0.1, 3).H(3, 3), 100, 1e-3);
 }
 
 TEST(PriorPieces, TheWallsOfABuildingAreOnePieceThoseOfNoneOneACell) {
@@ -48,6 +47,50 @@ TEST(PriorPieces, TheWallsOfABuildingAreOnePieceThoseOfNoneOneACell) {
   };
   EXPECT_EQ(pieces_of(7), 1u);
   EXPECT_EQ(pieces_of(PointCloud::no_feature), 3u);
+}
+
+PlaneMatch ground_match(double x, double y, double z, double spread_m = 0.03) { return {{x, y, z}, {0, 0, 1}, 0.0, spread_m * spread_m}; }
+
+TEST(PriorPieces, GroundIsHeardUphillRoofsAndHedgesAreNot) {
+  const auto heard = [](const PlaneMatch& match) {
+    PiecesOfPrior pieces(20, 70);
+    pieces.add(0, pose(0, 0, 0), {match}, noise);
+    return pieces.size() == 1;
+  };
+  EXPECT_TRUE(heard(ground_match(15, 0, 0)));
+  EXPECT_TRUE(heard(ground_match(40, 0, 4)));      // a street of 10 %
+  EXPECT_FALSE(heard(ground_match(20, 0, 8)));     // a flat roof
+  EXPECT_FALSE(heard(ground_match(15, 0, 0, 0.3)));   // a hedge
+}
+
+TEST(PriorPieces, GroundSaysNothingOfThePlace) {
+  PiecesOfPrior pieces(20, 70);
+  std::vector<PlaneMatch> slope;
+  for (double x = -20; x <= 20; x += 2) slope.push_back({{x, 3, 0.1 * x}, Eigen::Vector3d(-0.1, 0, 1).normalized(), 0.05, 1e-4});
+  pieces.add(0, pose(0, 0, 0), slope, noise);
+  PoseGraph graph(PoseGraphOptions{.absolute_width = 0, .between_width = 0});
+  graph.add_pose(pose(0, 0, 0));
+  graph.add_absolute(0, pose(0, 0, 0), 1e-6 * Matrix6d::Identity());
+  pieces.add_to(graph, {{0.3, 0.3, 0.3, 0.1}});
+  graph.optimize();
+  EXPECT_NEAR(graph.pose(0).translation().x(), 0, 1e-3);
+  EXPECT_LT(graph.pose(0).translation().z(), 1.7 - 0.01);
+}
+
+TEST(PriorPieces, ABuildingIsLookedForWhereItHadBeenSeen) {
+  PiecesOfPrior pieces(20, 70);
+  std::vector<PlaneMatch> walls;
+  for (const double up : {0.0, 2.0, 4.0})
+    for (const auto& normal : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) walls.push_back({{10, 8, up}, normal, 1.5 * normal.x(), 1e-4, 7});
+  pieces.vote(pose(0, 0, 0), walls);
+  pieces.take_likeliest_offsets();
+  PatchCloud patches;
+  patches.patches = {SurfacePatch{.mean = {8.5f, 8, 2}, .normal = {1, 0, 0}, .feature = 7}, SurfacePatch{.mean = {8.5f, 8, 2}, .normal = {1, 0, 0}},
+                     SurfacePatch{.mean = {8.5f, 8, 2}, .normal = {0, 0, 1}, .feature = 7}};
+  pieces.move_buildings(patches);
+  EXPECT_FLOAT_EQ(patches.patches[0].mean.x(), 10);
+  EXPECT_FLOAT_EQ(patches.patches[1].mean.x(), 8.5f);   // of no building
+  EXPECT_FLOAT_EQ(patches.patches[2].mean.x(), 8.5f);   // a roof
 }
 
 /// Walls across x, one a cell, each seen where it really is; the prior has them shifted.

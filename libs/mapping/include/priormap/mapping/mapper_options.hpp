@@ -99,6 +99,7 @@ struct EstimateOptions {
   double surface_sigma_m = 0.1;
   double common_share = 0.05;
   double kernel_width = 3;
+  double ground_kernel_width = 1.5;
   int passes = 3;
   PoseGraphOptions graph{.absolute_width = 0, .between_width = 0};
 
@@ -115,7 +116,8 @@ struct EstimateOptions {
     visit("common-share", common_share, {"share of the variance of the pieces' offsets that all have in common, as when a whole source is shifted; the poses are no surer than that", "", 0, 1});
     visit("surface-sigma", surface_sigma_m, {"roughness of the prior's surfaces against the real ones, within a piece", "m", 1e-3, 10});
     visit("piece-kernel-width", kernel_width, {"width of the Geman-McClure kernel within a piece, in standard deviations", "", 0.5, 100});
-    visit("passes", passes, {"times that the drive is compared with the prior and estimated anew", "", 1, 10});
+    visit("ground-kernel-width", ground_kernel_width, {"the same on level ground", "", 0.5, 100});
+    visit("passes", passes, {"times that the drive is compared with the prior and estimated anew, after a first look at where its walls lie", "", 1, 10});
     graph.describe(visit);
   }
 };

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -51,15 +52,22 @@ class NearTiles {
 /// near, read in the background before they are needed, and are dropped behind it. What it holds depends on the places asked for alone, not on timing.
 template <class Map>
 class PriorWindow {
+  static constexpr bool takes_patches = requires(Map& map, const PatchCloud& patches) { map.insert(patches); };
+
  public:
-  PriorWindow(NearTiles tiles, Map empty)
-      : tiles_(std::move(tiles)), map_(std::move(empty)), prefetch_(std::make_unique<TilePrefetch<Tile>>([points = &tiles_.points()](TileKey key) { return load(*points, key); })) {}
+  using Tile = std::conditional_t<takes_patches, PatchCloud, PointCloud>;
+  PriorWindow(NearTiles tiles, Map empty, std::function<void(Tile&)> amend = {})
+      : amend_(std::move(amend)), tiles_(std::move(tiles)), map_(std::move(empty)), prefetch_(std::make_unique<TilePrefetch<Tile>>([points = &tiles_.points()](TileKey key) { return load(*points, key); })) {}
 
   /// Loads and drops, then returns what is there.
   const Map& around(const Eigen::Vector3d& p_map) {
     const auto arrived = tiles_.move_to(p_map);
     if (!arrived.empty()) map_.remove_beyond(p_map, tiles_.reach_m());
-    for (Tile& tile : bring(arrived)) map_.insert(tile_in_map(std::move(tile), tiles_.points(), tiles_.frame()));
+    for (Tile& tile : bring(arrived)) {
+      Tile here = tile_in_map(std::move(tile), tiles_.points(), tiles_.frame());
+      if (amend_) amend_(here);
+      map_.insert(here);
+    }
     look_ahead(p_map);
     return map_;
   }
@@ -69,8 +77,6 @@ class PriorWindow {
 
  private:
   static constexpr double ahead_m = 50;
-  static constexpr bool takes_patches = requires(Map& map, const PatchCloud& patches) { map.insert(patches); };
-  using Tile = std::conditional_t<takes_patches, PatchCloud, PointCloud>;
 
   static Tile load(const PriorPoints& points, TileKey key) {
     if constexpr (takes_patches)
@@ -98,6 +104,7 @@ class PriorWindow {
     if (!motion.isZero()) prefetch_->wish(tiles_.lacking_at(p_map + ahead_m * motion.normalized()));
   }
 
+  std::function<void(Tile&)> amend_;
   NearTiles tiles_;
   Map map_;
   std::unique_ptr<TilePrefetch<Tile>> prefetch_;
