@@ -16,7 +16,7 @@ void OffsetVotes::add(const PlaneMatch& match) {
 Eigen::Vector3d OffsetVotes::likeliest() const {
   constexpr float least_gain = 0.01f;   // of all voices, for the first metre
   Eigen::Vector2f best = Eigen::Vector2f::Zero();
-  float most = -1;
+  float most = votes_[votes_.size() / 2];
   each([&](int at, const Eigen::Vector2f& offset) {
     const float voices = votes_[static_cast<std::size_t>(at)] - least_gain * all_ * offset.squaredNorm();
     if (voices > most) most = voices, best = offset;

@@ -66,7 +66,8 @@ TEST(PriorPieces, GroundIsHeardUphillRoofsAndHedgesAreNot) {
 TEST(PriorPieces, GroundSaysNothingOfThePlace) {
   PiecesOfPrior pieces(20, 70);
   std::vector<PlaneMatch> slope;
-  for (double x = -20; x <= 20; x += 2) slope.push_back({{x, 3, 0.1 * x}, Eigen::Vector3d(-0.1, 0, 1).normalized(), 0.05, 1e-4});
+  for (double x = -20; x <= 20; x += 2)
+    for (const double y : {-3.0, 3.0}) slope.push_back({{x, y, 0.1 * x}, Eigen::Vector3d(-0.1, 0, 1).normalized(), 0.05, 1e-4});
   pieces.add(0, pose(0, 0, 0), slope, noise);
   PoseGraph graph(PoseGraphOptions{.absolute_width = 0, .between_width = 0});
   graph.add_pose(pose(0, 0, 0));

@@ -285,39 +285,21 @@ TEST(MergePriors, ARasterGivesWayToModelsAndIsRoofEvidenceInsideOutlines) {
   }
 }
 
-TEST(MergePriors, AWallOfARasterStaysWhereNobodyKnowsItBetter) {
-  const TestFolder folder;
-  write_houses(folder / "osm", source("osm", "osm"), {{"h", 10, 10, 10, 100, 6, "tag"}}, 16);
-  PriorWriter writer(folder / "dsm", test_manifest({source("dsm", "raster")}, 16), Overwrite::refuse);
-  PointCloud cloud;
-  for (const double x : {8.5, 30.0})   // beside the house's wall at x = 10, and alone
-    for (double y = 10.5; y < 20; y += 1)
-      for (double z = 100.5; z < 110; z += 1) append(cloud, {{x, y, z}, {-1, 0, 0}, PointClass::unclassified}, PointCloud::no_feature);
-  writer.add(cloud);
-  writer.finish(1);
-  const MergeReport report = merge({folder / "osm", folder / "dsm"}, folder / "merged");
-  const auto kept = points_of(folder / "merged", "dsm");
-  EXPECT_EQ(kept.size(), 100u);
-  EXPECT_TRUE(std::ranges::all_of(kept, [](const Eigen::Vector3d& p) { return p.x() == 30; }));
-  EXPECT_EQ(report.walls_known_better, 100u);
-  EXPECT_EQ(report.contradicted, 0u) << "a wall says nothing of a roof";
-}
-
-TEST(MergePriors, AHouseThatIsNotThereTakesNoWallOfARasterWithIt) {
-  const TestFolder folder;
-  const double wall_x = 7.5;   // of a house that OSM does not know, in the gap before one that is not there
-  write_houses(folder / "osm", source("osm", "osm"), {{"not there", 10, 0, 10, 100, 8, "default"}}, 16);
-  PriorWriter writer(folder / "dsm", test_manifest({source("dsm", "raster")}, 16), Overwrite::refuse);
-  PointCloud cloud;
-  for (double y = 0.5; y < 10; y += 1) {
-    for (double x = 0.5; x < 30; x += 1) append(cloud, {{x, y, x < wall_x ? 110.0 : 100.0}, {0, 0, 1}, PointClass::unclassified}, PointCloud::no_feature);
-    for (double z = 100.5; z < 110; z += 1) append(cloud, {{wall_x, y, z}, {1, 0, 0}, PointClass::unclassified}, PointCloud::no_feature);
+TEST(MergePriors, TheWallsOfARasterStayBesideThoseOfOthers) {
+  for (const std::string kind : {"osm", "citygml"}) {
+    const TestFolder folder;
+    write_houses(folder / "houses", source("houses", kind), {{"h", 10, 10, 10, 100, 6, "tag"}}, 16);
+    PriorWriter writer(folder / "dsm", test_manifest({source("dsm", "raster")}, 16), Overwrite::refuse);
+    PointCloud cloud;
+    for (const double x : {8.5, 11.5, 30.0})   // before and behind the house's wall at x = 10, and alone
+      for (double y = 10.5; y < 20; y += 1)
+        for (double z = 100.5; z < 110; z += 1) append(cloud, {{x, y, z}, {-1, 0, 0}, PointClass::unclassified}, PointCloud::no_feature);
+    writer.add(cloud);
+    writer.finish(1);
+    const MergeReport report = merge({folder / "houses", folder / "dsm"}, folder / "merged");
+    EXPECT_EQ(points_of(folder / "merged", "dsm").size(), 300u) << kind;
+    EXPECT_EQ(report.contradicted, 0u) << "a wall says nothing of a roof";
   }
-  writer.add(cloud);
-  writer.finish(1);
-  merge({folder / "osm", folder / "dsm"}, folder / "merged");
-  const auto kept = points_of(folder / "merged", "dsm");
-  EXPECT_EQ(std::ranges::count_if(kept, [&](const Eigen::Vector3d& p) { return p.x() == wall_x && p.z() > 104.5; }), 50) << "but for the lowest 4 m, the foot of the phantom's walls and 3 m";
 }
 
 TEST(MergePriors, GuessedHeightsGiveWayToWhatASurfaceRasterSaw) {

@@ -194,7 +194,6 @@ std::string to_text(const MergeReport& report) {
   line("crs", report.manifest.crs.empty() ? "none" : report.manifest.crs);
   count("duplicates united", report.duplicates);
   count("left out under models", report.under_models);
-  count("raster walls known better", report.walls_known_better);
   count("left out as contradicted", report.contradicted);
   count("left out by precedence", report.thinned);
   return text.str();
@@ -238,10 +237,9 @@ MergeReport merge_priors(const std::vector<std::filesystem::path>& inputs, const
   });
   report.kept = report.manifest.num_points;
   report.under_models = rules.under_models();
-  report.walls_known_better = rules.walls_known_better();
   report.contradicted = rules.contradicted();
   report.thinned = rules.thinned();
-  report.duplicates = points_in - report.kept - report.under_models - report.walls_known_better - report.contradicted - report.thinned;
+  report.duplicates = points_in - report.kept - report.under_models - report.contradicted - report.thinned;
   return report;
 }
 

@@ -24,11 +24,10 @@ double sigma_m(const PointRecord& p) { return p.sigma_mm == PointRecord::unknown
 }  // namespace
 
 double MergeRules::halo(const Parameters& parameters, const std::vector<int>& precedence_of_source) {
-  // A point is thinned by one of the level above, which stands only if none of the level above that thinned it, and so on. One that stands may be a wall of a raster, which stands
-  // only if no other wall does near it, and that only if no raster contradicts it.
+  // A point is thinned by one of the level above, which stands only if none of the level above that thinned it, and so on; and that only if no raster contradicts it.
   const std::set<int> levels(precedence_of_source.begin(), precedence_of_source.end());
   const double chain_m = parameters.min_distance_m * double(levels.empty() ? 0 : levels.size() - 1);
-  return (chain_m + same_wall_m + evidence_radius_m) / parameters.horizontal_unit_m;
+  return (chain_m + evidence_radius_m) / parameters.horizontal_unit_m;
 }
 
 bool MergeRules::is_surface_raster(const PointRecord& p) const {
@@ -42,7 +41,6 @@ bool MergeRules::is_guessed(const PointRecord& p) const {
 void MergeRules::apply(const Footprints::InTile& models, std::vector<PointRecord>& points) {
   if (!models.empty()) drop_rasters_under_models(models, points);
   if (!parameters_.keep_guessed_roofs) drop_contradicted(points);
-  drop_walls_known_better(points);
   if (parameters_.min_distance_m > 0) thin(points);
 }
 
@@ -62,7 +60,7 @@ std::uint64_t MergeRules::erase(std::vector<PointRecord>& points, const Doomed& 
 void MergeRules::drop_rasters_under_models(const Footprints::InTile& models, std::vector<PointRecord>& points) {
   Doomed doomed(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
-    doomed[i] = facts_.source_is_raster[points[i].source] && models.contains(points[i].x, points[i].y);
+    doomed[i] = facts_.source_is_raster[points[i].source] && !is_wall(points[i]) && models.contains(points[i].x, points[i].y);
   under_models_ += erase(points, doomed);
 }
 
@@ -89,23 +87,6 @@ void MergeRules::drop_contradicted(std::vector<PointRecord>& points) {
     doomed[i] = has_witness && !agrees;
   }
   contradicted_ += erase(points, doomed);
-}
-
-void MergeRules::drop_walls_known_better(std::vector<PointRecord>& points) {
-  const auto of_raster = [&](const PointRecord& p) { return facts_.source_is_raster[p.source] && is_wall(p); };
-  if (std::ranges::none_of(points, of_raster)) return;
-  const double step_m = 0.001 * parameters_.horizontal_unit_m, z_step_m = 0.001 * parameters_.vertical_unit_m;
-  NeighbourGrid known(points.size(), std::int64_t(std::ceil(same_wall_m / step_m)), 0);
-  for (const PointRecord& p : points)
-    if (!facts_.source_is_raster[p.source] && is_wall(p)) known.insert(p);
-  Doomed doomed(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    doomed[i] = of_raster(points[i]) && known.any_around(points[i], [&](const PointRecord& wall) {
-      // Of a house that is not there, the foot of the walls is not contradicted.
-      if (is_guessed(wall) && (double(points[i].z) - wall.z) * z_step_m > same_wall_m) return false;
-      return std::hypot(points[i].x - wall.x, points[i].y - wall.y) * step_m < same_wall_m;
-    });
-  walls_known_better_ += erase(points, doomed);
 }
 
 void MergeRules::thin(std::vector<PointRecord>& points) {

@@ -26,9 +26,6 @@ class MergeRules {
   };
   /// Around a point of a building of guessed height, how far a raster is asked, and what still counts as agreement.
   static constexpr double evidence_radius_m = 2.0, evidence_tolerance_m = 1.0;
-  /// A raster knows the place of a wall to half a cell only: nearer than this to a wall that another source knows, its own are left out; above one of guessed height by
-  /// more than this they stay.
-  static constexpr double same_wall_m = 3.0;
 
   MergeRules(Parameters parameters, MergeFacts facts) : parameters_(parameters), facts_(std::move(facts)) {}
 
@@ -39,7 +36,6 @@ class MergeRules {
   void apply(const Footprints::InTile& models, std::vector<PointRecord>& points);
 
   std::uint64_t under_models() const { return under_models_; }
-  std::uint64_t walls_known_better() const { return walls_known_better_; }
   std::uint64_t contradicted() const { return contradicted_; }
   std::uint64_t thinned() const { return thinned_; }
 
@@ -47,7 +43,6 @@ class MergeRules {
   using Doomed = std::vector<char>;
   void drop_rasters_under_models(const Footprints::InTile& models, std::vector<PointRecord>& points);
   void drop_contradicted(std::vector<PointRecord>& points);
-  void drop_walls_known_better(std::vector<PointRecord>& points);
   void thin(std::vector<PointRecord>& points);
   static std::uint64_t erase(std::vector<PointRecord>& points, const Doomed& doomed);
   bool is_surface_raster(const PointRecord& p) const;
@@ -55,7 +50,7 @@ class MergeRules {
 
   Parameters parameters_;
   MergeFacts facts_;
-  std::atomic<std::uint64_t> under_models_ = 0, walls_known_better_ = 0, contradicted_ = 0, thinned_ = 0;
+  std::atomic<std::uint64_t> under_models_ = 0, contradicted_ = 0, thinned_ = 0;
 };
 
 }  // namespace priormap

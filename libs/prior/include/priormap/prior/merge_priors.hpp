@@ -35,7 +35,6 @@ struct MergeReport {
   std::uint64_t kept = 0;
   std::uint64_t duplicates = 0;         ///< the same place of the same feature of the same source, in several priors
   std::uint64_t under_models = 0;       ///< raster points inside the outline of a building model
-  std::uint64_t walls_known_better = 0; ///< walls of a raster beside those of another source
   std::uint64_t contradicted = 0;       ///< of buildings of guessed height, by a surface raster
   std::uint64_t thinned = 0;            ///< nearer than the minimum distance to a source of higher precedence
 };
