@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <priormap/core/error.hpp>
@@ -31,12 +32,11 @@ class PointBuffer {
       flush();
       corner_ = {x, y};
     }
+    if (normal != normal_ || sigma_m != sigma_m_) set_surface(normal, sigma_m);
     LasPoint& point = points_.emplace_back(common_);
     point.x = static_cast<std::int32_t>(x - corner_.x);
     point.y = static_cast<std::int32_t>(y - corner_.y);
     point.z = static_cast<std::int32_t>(nearest(position.z()));
-    point.set_normal(normal.cast<float>());
-    point.set_sigma(static_cast<float>(sigma_m));
   }
 
   void flush() {
@@ -45,6 +45,14 @@ class PointBuffer {
   }
 
  private:
+  /// The same for all points of a face.
+  void set_surface(const Eigen::Vector3d& normal, double sigma_m) {
+    normal_ = normal;
+    sigma_m_ = sigma_m;
+    common_.set_normal(normal.cast<float>());
+    common_.set_sigma(static_cast<float>(sigma_m));
+  }
+
   /// In lattice steps, as std::round, which is a call.
   static std::int64_t nearest(double metres) {
     const double steps = metres * 1000;
@@ -57,6 +65,8 @@ class PointBuffer {
 
   PriorWriter& writer_;
   LasPoint common_;
+  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();   ///< in common_, as sigma_m_ is
+  double sigma_m_ = std::numeric_limits<double>::quiet_NaN();
   LatticePoint corner_;
   std::vector<LasPoint> points_;
 };

@@ -32,9 +32,13 @@ class TileSpool {
   std::vector<PointRecord> spare();
 
  private:
+  /// Points as they are, or as runs where that takes less room; in a few chunks, which are not copied when more come.
   struct Tile {
     std::vector<PointRecord> points;
-    std::vector<SpillFile::Piece> pieces;
+    std::vector<std::vector<std::byte>> runs;
+    std::vector<SpillFile::Piece> spilled_points, spilled_runs;
+
+    std::size_t bytes() const;
   };
   struct KeyHash {
     std::size_t operator()(TileKey key) const {
