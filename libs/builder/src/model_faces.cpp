@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <priormap/pointcloud/slope.hpp>
+
 namespace priormap {
 namespace {
 
@@ -44,7 +46,7 @@ bool is_implausible(const Polygon3& polygon, double area_m2) {
 
 SurfaceClass class_by_slope(const Eigen::Vector3d& normal, ModelKind kind) {
   const SurfaceClass underside = kind == ModelKind::bridge ? SurfaceClass::outer_ceiling : SurfaceClass::ground_surface;
-  return normal.z() > 0.3 ? SurfaceClass::roof : normal.z() < -0.3 ? underside : SurfaceClass::wall;
+  return is_wall(normal.z()) ? SurfaceClass::wall : normal.z() > 0 ? SurfaceClass::roof : underside;
 }
 
 void turn_over(ModelFace& face) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <priormap/pointcloud/slope.hpp>
+
 namespace priormap {
 
 std::int64_t WallIndex::cell(double x, double y) {
@@ -11,7 +13,7 @@ std::int64_t WallIndex::cell(double x, double y) {
 }
 
 void WallIndex::add(const Polygon3& face, const Eigen::Vector3d& normal) {
-  if (!is_steep(normal) || face.exterior.size() < 3) return;
+  if (!is_wall(normal.z()) || face.exterior.size() < 3) return;
   Eigen::Vector2d low = face.exterior.front().head<2>(), high = low;
   for (const Eigen::Vector3d& p : face.exterior) {
     low = low.cwiseMin(p.head<2>());
@@ -58,7 +60,7 @@ bool WallIndex::touches(const Wall& wall, const Eigen::Vector3f& normal, const E
 }
 
 void WallIndex::remove_shared(const Eigen::Vector3d& normal, std::vector<Eigen::Vector3d>& points) const {
-  if (!is_steep(normal)) return;
+  if (!is_wall(normal.z())) return;
   const Eigen::Vector3f direction = normal.cast<float>();
   std::erase_if(points, [&](const Eigen::Vector3d& p) {
     const auto found = cells_.find(cell(p.x(), p.y()));

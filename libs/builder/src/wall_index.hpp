@@ -18,7 +18,6 @@ class WallIndex {
   void remove_shared(const Eigen::Vector3d& normal, std::vector<Eigen::Vector3d>& points) const;
 
   static constexpr double touching_m = 0.05;   ///< gaps that no beam enters
-  static bool is_steep(const Eigen::Vector3d& normal) { return std::abs(normal.z()) < 0.3; }
 
  private:
   struct Wall {

@@ -8,6 +8,7 @@
 
 #include <priormap/builder/bbox_filter.hpp>
 #include <priormap/builder/solid_index.hpp>
+#include <priormap/pointcloud/slope.hpp>
 #include <priormap/tessellation/sample.hpp>
 
 #include "chunks.hpp"
@@ -19,7 +20,6 @@ namespace priormap {
 namespace {
 
 /// A point's sigma is that of the direction it is known in: a wall's of the outline, a roof's of the height.
-bool is_roof(const Eigen::Vector3d& normal) { return std::abs(normal.z()) > 0.3; }
 
 /// Footprints square by square: neighbours fall into the same tiles and touch each other.
 class Squares {
@@ -116,7 +116,7 @@ class SquareWriter {
                             [&](const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
                               if (!known) buffer_.begin(building.file, writer_.add_feature(building.feature));
                               known = true;
-                              buffer_.add(p, normal, is_roof(normal) ? roof_sigma_m : options_.sigma_m);
+                              buffer_.add(p, normal, is_wall(normal.z()) ? options_.sigma_m : roof_sigma_m);
                             });
   }
 

@@ -11,6 +11,7 @@
 #include <priormap/core/parallel.hpp>
 #include <priormap/geodesy/crs.hpp>
 #include <priormap/pointcloud/estimate_normals.hpp>
+#include <priormap/pointcloud/slope.hpp>
 
 #include "tile_cells.hpp"
 
@@ -65,17 +66,12 @@ class TileCache {
   std::list<Held> held_;   // touched last in front
 };
 
-}  // namespace
-
-namespace {
-
 /// Low roofs of guessed heights would pass for ground.
 void leave_out_roofs(PointCloud& points) {
-  constexpr float level = 0.3f;
   if (points.classification.empty()) return;
   std::vector<std::uint32_t> kept;
   for (std::uint32_t i = 0; i < points.size(); ++i)
-    if (points.classification[i] != static_cast<std::uint8_t>(PointClass::building) || std::abs(points.normal[i].z()) < level) kept.push_back(i);
+    if (points.classification[i] != static_cast<std::uint8_t>(PointClass::building) || is_wall(points.normal[i].z())) kept.push_back(i);
   if (kept.size() < points.size()) points = points.select(kept);
 }
 

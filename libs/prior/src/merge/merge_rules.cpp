@@ -6,6 +6,7 @@
 #include <set>
 
 #include <priormap/pointcloud/point_cloud.hpp>
+#include <priormap/pointcloud/slope.hpp>
 
 #include "merge/neighbour_grid.hpp"
 
@@ -14,10 +15,7 @@ namespace {
 
 bool is_roof(const PointRecord& p) { return p.normal[2] > 32767 / 2; }
 
-bool is_wall(const PointRecord& p) {
-  constexpr int level = 32767 * 3 / 10;
-  return std::abs(p.normal[2]) < level && (p.normal[0] != 0 || p.normal[1] != 0);
-}
+bool is_wall(const PointRecord& p) { return priormap::is_wall(p.normal[2] / 32767.0) && (p.normal[0] != 0 || p.normal[1] != 0); }
 
 double sigma_m(const PointRecord& p) { return p.sigma_mm == PointRecord::unknown_sigma ? 0.0 : p.sigma_mm / 1000.0; }
 
