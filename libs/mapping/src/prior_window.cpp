@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <priormap/core/symmetric.hpp>
+
 namespace priormap {
 namespace {
 
@@ -20,15 +22,6 @@ Eigen::Affine3d affine_to_map(const Eigen::Vector3d& origin, const PriorPoints& 
   A.linear().col(2) = Eigen::Vector3d(0, 0, points.units().vertical_m);
   A.translation() = corners[0];
   return A;
-}
-
-using SymmetricRow = Eigen::Matrix<float, 6, 1>;
-
-SymmetricRow transformed(const SymmetricRow& c, const Eigen::Matrix3f& A) {
-  Eigen::Matrix3f full;
-  full << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
-  const Eigen::Matrix3f r = A * full * A.transpose();
-  return (SymmetricRow() << r(0, 0), r(0, 1), r(0, 2), r(1, 1), r(1, 2), r(2, 2)).finished();
 }
 
 }  // namespace
@@ -53,7 +46,7 @@ PatchCloud tile_in_map(PatchCloud tile, const PriorPoints& points, const MapFram
   for (SurfacePatch& patch : tile.patches) {
     patch.mean = linear * patch.mean;
     patch.normal = (of_normals * patch.normal).normalized();
-    patch.covariance = transformed(patch.covariance, linear);
+    patch.covariance = turned(patch.covariance, linear);
   }
   return tile;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <priormap/core/symmetric.hpp>
+
 namespace priormap {
 namespace {
 
@@ -29,14 +31,6 @@ class Sweep {
   Eigen::Matrix3f turn_[3];
   Eigen::Vector3f way_[3];
 };
-
-void turn_covariance(Surfel& surfel, const Eigen::Matrix3f& R) {
-  const auto& c = surfel.covariance;
-  Eigen::Matrix3f C;
-  C << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
-  C = R * C * R.transpose();
-  surfel.covariance << C(0, 0), C(0, 1), C(0, 2), C(1, 1), C(1, 2), C(2, 2);
-}
 
 }  // namespace
 
@@ -67,10 +61,9 @@ void undo_motion(SurfelCloud& scan, const Vector6d& velocity) {
   for (Surfel& surfel : scan.surfels) {
     if (surfel.time_s == 0) continue;
     surfel.mean += sweep.shift(surfel.mean, surfel.time_s);
-    turn_covariance(surfel, sweep.turn(surfel.time_s));
+    surfel.covariance = turned(surfel.covariance, sweep.turn(surfel.time_s));
   }
 }
-
 
 double longest_time_s(const SurfelCloud& scan) {
   float longest = 0;

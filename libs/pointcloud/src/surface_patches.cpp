@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <utility>
 
+#include <priormap/core/symmetric.hpp>
+
 namespace priormap {
 namespace {
 
@@ -50,7 +52,7 @@ class PatchSums {
     SurfacePatch patch;
     patch.mean = first_ + d;
     if (has_normal_) patch.normal = normals_.normalized();
-    patch.covariance << c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2);
+    patch.covariance = row_of(c);
     patch.sigma_m = std::sqrt(variances_ / count_);
     patch.count = count_;
     patch.feature = feature_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <priormap/core/error.hpp>
+#include <priormap/core/symmetric.hpp>
 #include <priormap/registration/register_joint.hpp>
 
 #include "instruction_set.hpp"
@@ -37,10 +38,9 @@ struct SourceColumns {
 
   /// Variance of the points of surfel `i` along a direction in sensor axes.
   double spread(std::size_t i, const Eigen::Vector3d& direction) const {
-    const auto c = [&](std::size_t k) { return double(columns[3 + k][i]); };
-    Eigen::Matrix3d covariance;
-    covariance << c(0), c(1), c(2), c(1), c(3), c(4), c(2), c(4), c(5);
-    return std::max(0.0, direction.dot(covariance * direction));
+    SymmetricRow<double> covariance;
+    for (std::size_t k = 0; k < 6; ++k) covariance[Eigen::Index(k)] = double(columns[3 + k][i]);
+    return std::max(0.0, direction.dot(full_of(covariance) * direction));
   }
 
   kernels::Source view() const {

@@ -3,6 +3,7 @@
 #include <limits>
 #include <numeric>
 #include <priormap/core/error.hpp>
+#include <priormap/core/symmetric.hpp>
 #include <priormap/registration/surfel_map.hpp>
 
 #include "instruction_set.hpp"
@@ -11,13 +12,6 @@
 
 namespace priormap {
 namespace {
-
-Eigen::Matrix<float, 6, 1> rotated(const Eigen::Matrix<float, 6, 1>& c, const Eigen::Matrix3f& R) {
-  Eigen::Matrix3f full;
-  full << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
-  const Eigen::Matrix3f r = R * full * R.transpose();
-  return (Eigen::Matrix<float, 6, 1>() << r(0, 0), r(0, 1), r(0, 2), r(1, 1), r(1, 2), r(2, 2)).finished();
-}
 
 }  // namespace
 
@@ -80,7 +74,7 @@ void SurfelMap::insert(const SurfelCloud& scan, const Eigen::Isometry3d& T_map_s
   for (const Surfel& s : scan.surfels) {
     Item item = place(T_map_scan * (scan.origin + s.mean.cast<double>()));
     item.surfel.count = s.count;
-    item.surfel.covariance = rotated(s.covariance, R);
+    item.surfel.covariance = turned(s.covariance, R);
     items.push_back(item);
   }
   insert_items(items);

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <priormap/core/symmetric.hpp>
 
 namespace priormap {
 
@@ -11,11 +12,8 @@ SurfelShape shape_of_moments(const Surfel& surfel, float voxel_m) {
   const float thin = 0.15f * voxel_m;
   SurfelShape shape;
   if (surfel.count < least_points) return shape;
-  const auto& c = surfel.covariance;
-  Eigen::Matrix3f covariance;
-  covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(covariance);
+  solver.computeDirect(full_of(surfel.covariance));
   const Eigen::Vector3f l = solver.eigenvalues().cwiseMax(0.0f);
   if (l[0] < flatness * l[1] && l[0] < thin * thin) {
     shape.normal = solver.eigenvectors().col(0);
