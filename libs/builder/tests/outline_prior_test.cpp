@@ -35,8 +35,8 @@ class OutlinePrior : public testing::Test {
     return footprint;
   }
 
-  OutlineReport build(std::vector<Footprint> footprints, const std::string& name = "prior", int threads = 2) {
-    OutlineInput input{std::move(footprints), {{folder_ / "town.txt", std::string(64, '0')}}, {Crs::parse("EPSG:25832")}, "footprints", "", ""};
+  OutlineReport build(const std::vector<Footprint>& footprints, const std::string& name = "prior", int threads = 2) {
+    OutlineInput input{FootprintList(footprints), {{folder_ / "town.txt", std::string(64, '0')}}, {Crs::parse("EPSG:25832")}, "footprints", "", ""};
     return build_outline_prior(std::move(input), options_, outline_options_, folder_ / name, Overwrite::refuse, "test", {}, threads, events_);
   }
 

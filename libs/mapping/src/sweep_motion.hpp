@@ -15,7 +15,7 @@ Vector6d steady_velocity(const Eigen::Isometry3d& T_from, const Eigen::Isometry3
 Eigen::Isometry3d moved_on(const Eigen::Isometry3d& T, const Vector6d& velocity, double duration_s);
 
 /// The sensor moves while it sweeps: a point seen `time_s` after the stamp was seen from elsewhere. These bring all points to where they would have been seen from at the stamp.
-/// What carries no times (zeros, or no column) stays as it is.
+/// What carries no times (zeros, or no column) stays as it is. The origin of the scan is zero, as that of every Scan.
 void undo_motion(PointCloud& scan, const Vector6d& velocity);
 /// By the mean time of each surfel: exact in its mean to first order, also where a surfel holds points of several times.
 void undo_motion(SurfelCloud& scan, const Vector6d& velocity);

@@ -19,7 +19,7 @@ class PackedList {
   /// @throws IoError later, where the temporary file cannot be written
   explicit PackedList(std::size_t size) : pieces_(size), file_(std::make_unique<SpillFile>(SpillFile::temporary_folder(), memory_bytes)) {}
   PackedList() : PackedList(std::size_t(0)) {}
-  PackedList(const std::vector<T>& items) : PackedList(items.size()) {
+  explicit PackedList(const std::vector<T>& items) : PackedList(items.size()) {
     for (std::size_t i = 0; i < items.size(); ++i) put(i, items[i]);
   }
 

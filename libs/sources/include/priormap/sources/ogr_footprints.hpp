@@ -26,7 +26,6 @@ struct FootprintFields {
   }
 };
 
-
 /// Polygons of any vector file that OGR reads: GeoPackage, Shapefile, GeoJSON, FlatGeobuf ... Curves are replaced by chords. Ids are "LAYER/NUMBER" or "LAYER/ID".
 /// Field values that are no height or count are reported (702) and treated as absent; features without a polygon are left out (101).
 /// @param footprints  to append to: east before north, in the CRS that is returned; heights of the geometry are not used
