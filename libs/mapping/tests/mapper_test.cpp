@@ -5,6 +5,7 @@
 
 #include <priormap/mapping/mapper.hpp>
 
+#include "sweep_motion.hpp"
 #include "town.hpp"
 
 namespace priormap {
@@ -197,12 +198,21 @@ TEST_F(Street, ThreadsDoNotChangeTheResult) {
   for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(runs[0][k].T_map_sensor.matrix(), runs[1][k].T_map_sensor.matrix());
 }
 
+/// The scan as a head sees it that spins once in 0.1 s while the sensor moves at `velocity`: each point with its time, seen from where the sensor is then.
+Scan swept(Scan scan, const Vector6d& velocity) {
+  for (Eigen::Vector3f& p : scan.points.xyz) {
+    scan.points.time_s.push_back(static_cast<float>(-std::atan2(p.y(), p.x()) * 0.05 / std::numbers::pi));
+    p = (moved_on(Eigen::Isometry3d::Identity(), velocity, scan.points.time_s.back()).inverse() * p.cast<double>()).cast<float>();
+  }
+  return scan;
+}
+
 /// Cut off after any scan and gone on with in a mapper of its own, a drive ends as if it had not been.
 TEST_F(Street, AMapperGoesOnFromItsState) {
   const test::TiledPoints tiles(world_, 10);
   const NearTiles prior(tiles, MapFrame::local(), 20);   // tiles come and go
   std::vector<Scan> drive;
-  for (int k = 0; k < num_scans; ++k) drive.push_back(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+  for (int k = 0; k < num_scans; ++k) drive.push_back(swept(scan_from(length_m, truth(k), static_cast<std::size_t>(k)), steady_velocity(truth(k), truth(k + 1), 0.1)));
   const auto read = [&](std::size_t k) { return drive[k]; };
   for (const char* preset : {"default", "paper"}) {
     for (const auto& with : {std::optional<NearTiles>(prior), std::optional<NearTiles>()}) {
@@ -213,6 +223,7 @@ TEST_F(Street, AMapperGoesOnFromItsState) {
       Mapper whole = begin();
       drive_on(whole, 0, num_scans);
       const auto expected = whole.finish(read);
+      EXPECT_EQ(expected[4].motion_undone, preset == std::string("default"));
       for (const int cut : {1, 5, num_scans}) {
         Mapper half = begin(), rest = begin();
         drive_on(half, 0, cut);
@@ -230,6 +241,8 @@ TEST_F(Street, AMapperGoesOnFromItsState) {
           EXPECT_EQ(scans[k].T_map_online.matrix(), expected[k].T_map_online.matrix());
           EXPECT_EQ(scans[k].covariance, expected[k].covariance);
           EXPECT_EQ(scans[k].verdict, expected[k].verdict);
+          EXPECT_EQ(scans[k].velocity, expected[k].velocity);
+          EXPECT_EQ(scans[k].motion_undone, expected[k].motion_undone);
         }
       }
     }
