@@ -1,5 +1,7 @@
 #include <priormap/core/spill_file.hpp>
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -9,6 +11,21 @@
 #include <priormap/core/error.hpp>
 
 namespace priormap {
+namespace {
+
+std::atomic<std::uint64_t> files_made = 0;
+
+/// What a thread has read ahead, of the file it read last.
+struct Window {
+  std::uint64_t file = 0, offset = 0, end_of_last = 0;
+  std::vector<std::byte> bytes;
+
+  bool holds(SpillFile::Piece piece) const { return piece.offset >= offset && piece.offset + piece.size <= offset + bytes.size(); }
+};
+
+}  // namespace
+
+SpillFile::SpillFile(std::filesystem::path folder, std::size_t memory_bytes) : folder_(std::move(folder)), memory_bytes_(memory_bytes), number_(++files_made) {}
 
 SpillFile::~SpillFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
@@ -38,36 +55,49 @@ void SpillFile::write(std::span<const std::byte> bytes, std::uint64_t offset) co
 }
 
 SpillFile::Piece SpillFile::append(std::span<const std::byte> bytes) {
-  std::unique_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   const Piece piece{written_ + buffer_.size(), bytes.size()};
-  if (buffer_.size() + bytes.size() <= memory_bytes_) {
-    buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
-    return piece;
+  if (buffer_.size() + bytes.size() > memory_bytes_) {
+    if (descriptor_ < 0) open();
+    write(buffer_, written_);
+    written_ = piece.offset;
+    buffer_.clear();
   }
-  if (descriptor_ < 0) open();
-  write(buffer_, written_);
-  written_ = piece.offset;
-  buffer_.clear();
   if (bytes.size() <= memory_bytes_) {
     buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
-    return piece;
+  } else {
+    write(bytes, piece.offset);
+    written_ += bytes.size();
   }
-  written_ += bytes.size();
-  lock.unlock();
-  write(bytes, piece.offset);
   return piece;
 }
 
 void SpillFile::read(Piece piece, std::byte* target) const {
-  if (memory_bytes_ > 0) {
-    const std::lock_guard lock(mutex_);
+  constexpr std::size_t ahead = std::size_t(1) << 16;
+  thread_local Window window;
+  const bool same_file = window.file == number_, in_row = same_file && window.end_of_last == piece.offset;
+  if (!same_file) window.bytes.clear();
+  window.file = number_;
+  window.end_of_last = piece.offset + piece.size;
+  if (!window.holds(piece)) {
+    std::unique_lock lock(mutex_);
     if (piece.offset >= written_) {
       std::memcpy(target, buffer_.data() + (piece.offset - written_), piece.size);
       return;
     }
+    const std::uint64_t written = written_;
+    lock.unlock();
+    if (!in_row || piece.size > ahead) return read_file(piece.offset, {target, piece.size});
+    window.offset = piece.offset;
+    window.bytes.resize(std::min<std::uint64_t>(ahead, written - piece.offset));
+    read_file(window.offset, window.bytes);
   }
-  for (std::size_t done = 0; done < piece.size;) {
-    const ssize_t n = ::pread(descriptor_, target + done, piece.size - done, off_t(piece.offset + done));
+  std::memcpy(target, window.bytes.data() + (piece.offset - window.offset), piece.size);
+}
+
+void SpillFile::read_file(std::uint64_t offset, std::span<std::byte> target) const {
+  for (std::size_t done = 0; done < target.size();) {
+    const ssize_t n = ::pread(descriptor_, target.data() + done, target.size() - done, off_t(offset + done));
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) throw IoError(folder_, std::string("cannot read temporary data back: ") + std::strerror(n == 0 ? EIO : errno));
     done += std::size_t(n);

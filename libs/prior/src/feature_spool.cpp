@@ -15,8 +15,7 @@
 namespace priormap {
 namespace {
 
-std::vector<std::byte> pack(const Feature& feature) {
-  ByteWriter out;
+void pack(const Feature& feature, ByteWriter& out) {
   out.put(feature.source);
   out.put(feature.id);
   out.put(feature.height_m);
@@ -34,7 +33,6 @@ std::vector<std::byte> pack(const Feature& feature) {
       }
     }
   }
-  return out.take();
 }
 
 Feature unpack(std::span<const std::byte> bytes) {
@@ -69,13 +67,15 @@ std::string_view FeatureSpool::kept(const std::string& name) {
 }
 
 std::uint32_t FeatureSpool::add(const Feature& feature) {
-  const std::vector<std::byte> bytes = pack(feature);
+  ByteWriter packed;
+  pack(feature, packed);
+  const std::span<const std::byte> bytes = packed.bytes();
   const std::lock_guard lock(mutex_);
   if (items_.size() == PointCloud::no_feature) throw Error("a prior holds at most 4294967295 features; write several priors");
   const std::string name = feature.source + '\0' + feature.id;
   if (const auto found = number_of_name_.find(name); found != number_of_name_.end()) {
     Item& item = items_[found->second];
-    if (bytes < spill_.read(item.piece)) item.piece = spill_.append(bytes);
+    if (std::ranges::lexicographical_compare(bytes, spill_.read(item.piece))) item.piece = spill_.append(bytes);
     return found->second;
   }
   const auto number = std::uint32_t(items_.size());

@@ -73,10 +73,25 @@ struct OsmObjects {
     const auto at = std::ranges::lower_bound(ways, id, {}, &Way::id);
     return at != ways.end() && at->id == id ? &*at : nullptr;
   }
-  osmium::Location location(OsmNodeId id) const {
-    const auto at = std::ranges::lower_bound(nodes, id);
-    return at != nodes.end() && *at == id ? locations[static_cast<std::size_t>(at - nodes.begin())] : osmium::Location();
+};
+
+/// Where nodes lie.
+class NodeLocations {
+ public:
+  explicit NodeLocations(const OsmObjects& objects) : nodes_(objects.nodes), locations_(objects.locations) {}
+
+  /// Invalid where no file holds the node.
+  osmium::Location operator[](OsmNodeId id) {
+    if (next_ >= nodes_.size() || nodes_[next_] != id)   // of a ring the nodes mostly follow each other
+      next_ = static_cast<std::size_t>(std::ranges::lower_bound(nodes_, id) - nodes_.begin());
+    if (next_ == nodes_.size() || nodes_[next_] != id) return osmium::Location();
+    return locations_[next_++];
   }
+
+ private:
+  const std::vector<OsmNodeId>& nodes_;
+  const std::vector<osmium::Location>& locations_;
+  std::size_t next_ = 0;   ///< after the one found last
 };
 
 OsmBuildingTags building_tags(const osmium::OSMObject& object) {
@@ -189,7 +204,7 @@ void read_nodes(const fs::path& file, int threads, OsmObjects& objects) {
 /// Turns the objects into footprints, in order of kind and id.
 class FootprintAssembly {
  public:
-  FootprintAssembly(OsmObjects& objects, Diagnostics& diagnostics) : objects_(objects), diagnostics_(diagnostics) {}
+  FootprintAssembly(OsmObjects& objects, Diagnostics& diagnostics) : objects_(objects), locations_(objects), diagnostics_(diagnostics) {}
 
   FootprintList run() {
     inherit_tags_along_relations();
@@ -335,7 +350,7 @@ class FootprintAssembly {
     Ring2 ring;
     ring.reserve(nodes.size());
     for (const OsmNodeId node : nodes) {
-      const osmium::Location location = objects_.location(node);
+      const osmium::Location location = locations_[node];
       if (!location.valid()) {
         diagnostics_.add(DiagnosticCode::unresolved_reference, feature, "no file holds its " + feature_id("node", node) + "; ring left out");
         return std::nullopt;
@@ -346,6 +361,7 @@ class FootprintAssembly {
   }
 
   OsmObjects& objects_;
+  NodeLocations locations_;
   Diagnostics& diagnostics_;
   FootprintList footprints_;
   std::uint32_t num_building_relations_ = 0;

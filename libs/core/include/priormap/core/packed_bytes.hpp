@@ -28,7 +28,8 @@ class ByteWriter {
     const auto bytes = std::as_bytes(values);
     bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
   }
-  std::vector<std::byte> take() { return std::move(bytes_); }
+  std::span<const std::byte> bytes() const { return bytes_; }
+  void clear() { bytes_.clear(); }
 
  private:
   std::vector<std::byte> bytes_;

@@ -30,7 +30,9 @@ class PackedList {
   bool empty() const { return pieces_.empty(); }
   /// Only of a place that something was put at.
   T operator[](std::size_t i) const {
-    const std::vector<std::byte> bytes = file_->read(pieces_[i]);
+    thread_local std::vector<std::byte> bytes;   // as `out` below: memory that goes from item to item
+    bytes.resize(pieces_[i].size);
+    file_->read(pieces_[i], bytes.data());
     ByteReader in(bytes);
     T item;
     unpack(in, item);
@@ -64,9 +66,10 @@ class PackedList {
   static constexpr std::size_t memory_bytes = std::size_t(16) << 20;
 
   SpillFile::Piece append(const T& item) {
-    ByteWriter out;
+    thread_local ByteWriter out;
+    out.clear();
     pack(item, out);
-    return file_->append(out.take());
+    return file_->append(out.bytes());
   }
 
   std::vector<SpillFile::Piece> pieces_;
