@@ -12,8 +12,8 @@
 #include <priormap/core/error.hpp>
 #include <priormap/posegraph/pose_graph.hpp>
 
+#include "normal_matrix.hpp"
 #include "pose_residuals.hpp"
-#include "selected_inverse.hpp"
 
 namespace priormap {
 namespace {
@@ -354,73 +354,37 @@ std::vector<double> PoseGraph::piece_weights() const {
   return weights;
 }
 
-Marginals PoseGraph::marginals() const {
-  const std::vector<double> w_absolute = absolute_weights(), w_between = between_weights();
+std::vector<char> PoseGraph::poses_without_anchor(const std::vector<double>& absolute_weights) const {
   std::vector<char> anchored(size(), 0);
   for (std::size_t f = 0; f < absolute_.size(); ++f)
-    if (w_absolute[f] > 0) anchored[absolute_[f].id] = 1;
+    if (absolute_weights[f] > 0) anchored[absolute_[f].id] = 1;
   for (const auto& factor : piece_factors_) anchored[factor.pose] = 1;
-  const std::vector<char> held = held_poses(anchored, between_);
+  return held_poses(anchored, between_);
+}
 
-  std::vector<Eigen::Index> row_of(size(), -1);
-  Eigen::Index rows = 0;
-  for (std::size_t i = 0; i < size(); ++i)
-    if (!held[i]) row_of[i] = std::exchange(rows, rows + 6);
-
-  // Offsets follow the poses, three rows each and three of padding: the inverse is taken by blocks of six.
-  const Eigen::Index pose_rows = rows;
-  const auto row_of_piece = [&](std::size_t p) { return pose_rows + Eigen::Index(6 * p); };
-  rows += Eigen::Index(6 * pieces_.size());
-
-  std::vector<Eigen::Triplet<double>> entries;
-  const auto add_block = [&](std::size_t i, std::size_t j, const Matrix6d& block) {
-    if (row_of[i] < 0 || row_of[j] < 0 || row_of[i] < row_of[j]) return;
-    for (int r = 0; r < 6; ++r)
-      for (int c = 0; c < 6; ++c)
-        if (i != j || c <= r) entries.emplace_back(row_of[i] + r, row_of[j] + c, block(r, c));
-  };
-  for (std::size_t i = 0; i < size(); ++i) add_block(i, i, 1e-8 * Matrix6d::Identity());
+Marginals PoseGraph::marginals() const {
+  const std::vector<double> w_absolute = absolute_weights(), w_between = between_weights(), w_piece = piece_weights();
+  constexpr double least = 1e-8;   // for directions that nothing constrains
+  NormalMatrix normal(poses_without_anchor(w_absolute), pieces_.size());
+  for (std::size_t i = 0; i < size(); ++i) normal.add(i, i, least * Matrix6d::Identity());
   for (std::size_t f = 0; f < absolute_.size(); ++f) {
     const AbsoluteFactor& factor = absolute_[f];
     const Matrix6d J = absolute_residual(factor.T_map_sensor, poses_[factor.id]).J;
-    add_block(factor.id, factor.id, w_absolute[f] * J.transpose() * factor.information * J);
+    normal.add(factor.id, factor.id, w_absolute[f] * J.transpose() * factor.information * J);
   }
   for (std::size_t f = 0; f < between_.size(); ++f) {
     const BetweenFactor& factor = between_[f];
     const BetweenResidual e = between_residual(factor.T_a_b, poses_[factor.a], poses_[factor.b]);
     const Matrix6d information = w_between[f] * factor.information;
-    add_block(factor.a, factor.a, e.J_a.transpose() * information * e.J_a);
-    add_block(factor.b, factor.b, e.J_b.transpose() * information * e.J_b);
-    add_block(factor.a, factor.b, e.J_a.transpose() * information * e.J_b);
-    add_block(factor.b, factor.a, e.J_b.transpose() * information * e.J_a);
+    normal.add(factor.a, factor.a, e.J_a.transpose() * information * e.J_a);
+    normal.add(factor.b, factor.b, e.J_b.transpose() * information * e.J_b);
+    normal.add(factor.a, factor.b, e.J_a.transpose() * information * e.J_b);
+    normal.add(factor.b, factor.a, e.J_b.transpose() * information * e.J_a);
   }
-  const std::vector<double> w_piece = piece_weights();
-  for (std::size_t p = 0; p < pieces_.size(); ++p) {
-    for (int i = 0; i < 3; ++i) {
-      entries.emplace_back(row_of_piece(p) + i, row_of_piece(p) + i, w_piece[p] / (pieces_[p].sigma_m[i] * pieces_[p].sigma_m[i]));
-      entries.emplace_back(row_of_piece(p) + 3 + i, row_of_piece(p) + 3 + i, 1.0);
-    }
-  }
-  for (const PieceFactor& factor : piece_factors_) {
-    const Matrix6d J = absolute_residual(factor.T_map_sensor, poses_[factor.pose]).J;
-    const Eigen::Matrix<double, 9, 9> H = factor.equations.H.cast<double>();
-    add_block(factor.pose, factor.pose, J.transpose() * H.topLeftCorner<6, 6>() * J);
-    const Eigen::Matrix<double, 3, 6> across = H.bottomLeftCorner<3, 6>() * J;
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 6 && row_of[factor.pose] >= 0; ++c) entries.emplace_back(row_of_piece(factor.piece) + r, row_of[factor.pose] + c, across(r, c));
-      for (int c = 0; c <= r; ++c) entries.emplace_back(row_of_piece(factor.piece) + r, row_of_piece(factor.piece) + c, H(6 + r, 6 + c));
-    }
-  }
-  Eigen::SparseMatrix<double> lower(rows, rows);
-  lower.setFromTriplets(entries.begin(), entries.end());
-
-  Marginals marginals{std::vector<Matrix6d>(size(), Matrix6d::Zero()), {}};
-  if (rows == 0) return marginals;
-  const std::vector<Matrix6d> blocks = diagonal_blocks_of_inverse(lower);
-  for (std::size_t i = 0; i < size(); ++i)
-    if (row_of[i] >= 0) marginals.poses[i] = blocks[std::size_t(row_of[i]) / 6];
-  for (std::size_t p = 0; p < pieces_.size(); ++p) marginals.pieces.push_back(blocks[std::size_t(row_of_piece(p)) / 6].topLeftCorner<3, 3>());
-  return marginals;
+  for (std::size_t p = 0; p < pieces_.size(); ++p) normal.add(p, (w_piece[p] / pieces_[p].sigma_m.array().square()).matrix());
+  for (const PieceFactor& factor : piece_factors_)
+    normal.add(factor.pose, factor.piece, factor.equations, absolute_residual(factor.T_map_sensor, poses_[factor.pose]).J);
+  return normal.marginals();
 }
 
 }  // namespace priormap

@@ -118,6 +118,8 @@ class PoseGraph {
   struct FactorsOfPose {
     std::vector<std::size_t> absolute, between;
   };
+  /// The first of each part that nothing ties to the map.
+  std::vector<char> poses_without_anchor(const std::vector<double>& absolute_weights) const;
 
   PoseGraphOptions options_;
   std::vector<FactorsOfPose> factors_of_;
