@@ -260,6 +260,47 @@ PriorSource source_of(const HashedFile& file, const ModelSourceFrame& frame, con
   return source;
 }
 
+PriorManifest manifest_of(const Crs& prior, const PriorOptions& options, const std::vector<PriorSource>& sources, const std::string& generator) {
+  PriorManifest manifest;
+  manifest.crs = prior.name();
+  manifest.vertical = vertical_name(prior);
+  manifest.tile_size = options.tile_size_m;
+  manifest.spacing_m = options.spacing_or(0.5);
+  manifest.sources = sources;
+  manifest.generator = generator;
+  return manifest;
+}
+
+std::vector<HashedFile> files_with_models(const std::vector<HashedFile>& files, const Survey& survey, const Events& events) {
+  std::vector<HashedFile> kept;
+  for (const HashedFile& file : files) {
+    if (survey.frame_of(file))
+      kept.push_back(file);
+    else
+      events.warn(file.path.string() + ": holds no building with surfaces");
+  }
+  return kept;
+}
+
+/// Writes the points of all files, counts in `report`, and tells each source what it gave. @param sources  as many as files
+SightCounts write_models(const std::vector<HashedFile>& files, Survey& survey, const PriorOptions& prior_options, const ModelOptions& model_options, PriorWriter& writer,
+                         std::vector<PriorSource>& sources, ModelReport& report, int threads) {
+  const std::optional<LineOfSight> sight = survey.line_of_sight();
+  Sampling sampling(survey, sight ? &*sight : nullptr, *survey.frames(), prior_options, model_options, writer, threads);
+  SightCounts points;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::size_t buildings_before = report.buildings, bridges_before = report.bridges, plants_before = report.plants;
+    const SightCounts points_here = sampling.read(files[i], sources[i].id, static_cast<std::uint16_t>(i), report);
+    points += points_here;
+    auto& facts = sources[i].facts;
+    facts.emplace_back("buildings", std::to_string(report.buildings - buildings_before));
+    if (report.bridges > bridges_before) facts.emplace_back("bridges", std::to_string(report.bridges - bridges_before));
+    if (report.plants > plants_before) facts.emplace_back("plants", std::to_string(report.plants - plants_before));
+    std::ranges::move(sight_facts(model_options.sight, points_here), std::back_inserter(facts));
+  }
+  return points;
+}
+
 }  // namespace
 
 void ModelOptions::validate() const {
@@ -274,45 +315,20 @@ ModelReport build_model_prior(const std::vector<std::filesystem::path>& inputs, 
   Survey survey(prior_options, model_options, events);
   for (const HashedFile& file : files) survey.read(file);
   if (!survey.frames()) throw FormatError(files.front().path, "holds no building with surfaces" + (model_options.lod > 0 ? " of LoD" + std::to_string(model_options.lod) : std::string()));
-
-  PriorManifest manifest;
-  manifest.crs = survey.frames()->prior().name();
-  manifest.vertical = vertical_name(survey.frames()->prior());
-  manifest.tile_size = prior_options.tile_size_m;
-  manifest.spacing_m = prior_options.spacing_or(0.5);
-  manifest.generator = generator;
-  std::vector<const HashedFile*> with_models;
-  for (const HashedFile& file : files) {
-    const ModelSourceFrame* frame = survey.frame_of(file);
-    if (!frame) {
-      events.warn(file.path.string() + ": holds no building with surfaces");
-      continue;
-    }
-    manifest.sources.push_back(source_of(file, *frame, prior_options, model_options));
-    with_models.push_back(&file);
-  }
-  PriorWriter writer(output, manifest, overwrite);
+  const std::vector<HashedFile> with_models = files_with_models(files, survey, events);
+  std::vector<PriorSource> sources;
+  for (const HashedFile& file : with_models) sources.push_back(source_of(file, *survey.frame_of(file), prior_options, model_options));
+  PriorWriter writer(output, manifest_of(survey.frames()->prior(), prior_options, sources, generator), overwrite);
 
   ModelReport report;
-  const std::optional<LineOfSight> sight = survey.line_of_sight();
-  Sampling sampling(survey, sight ? &*sight : nullptr, *survey.frames(), prior_options, model_options, writer, threads);
-  SightCounts points;
-  for (std::size_t i = 0; i < with_models.size(); ++i) {
-    const std::size_t buildings_before = report.buildings, bridges_before = report.bridges, plants_before = report.plants;
-    const SightCounts points_here = sampling.read(*with_models[i], manifest.sources[i].id, static_cast<std::uint16_t>(i), report);
-    points += points_here;
-    manifest.sources[i].facts.emplace_back("buildings", std::to_string(report.buildings - buildings_before));
-    if (report.bridges > bridges_before) manifest.sources[i].facts.emplace_back("bridges", std::to_string(report.bridges - bridges_before));
-    if (report.plants > plants_before) manifest.sources[i].facts.emplace_back("plants", std::to_string(report.plants - plants_before));
-    std::ranges::move(sight_facts(model_options.sight, points_here), std::back_inserter(manifest.sources[i].facts));
-  }
+  const SightCounts points = write_models(with_models, survey, prior_options, model_options, writer, sources, report, threads);
   if (report.buildings + report.bridges + report.plants + report.terrain_models == 0) {
     throw FormatError(files.front().path, prior_options.bbox.empty() ? "none of its buildings could be built"
                                                                      : "no building lies inside --bbox (W,S,E,N in " + prior_options.bbox_crs + ")");
   }
   if (prior_options.bbox.empty()) model_options.sight.refuse_blindness(points);   // a box may well hold nothing that is seen
-  if (sight) report.sight = points;
-  writer.set_sources(manifest.sources);
+  if (model_options.sight.is_active()) report.sight = points;
+  writer.set_sources(sources);
   report.manifest = writer.finish(threads, events);
   return report;
 }
