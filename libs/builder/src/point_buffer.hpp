@@ -7,11 +7,12 @@
 #include <vector>
 
 #include <priormap/core/error.hpp>
+#include <priormap/geodesy/lattice.hpp>
 #include <priormap/prior/prior_writer.hpp>
 
 namespace priormap {
 
-/// Rounds points to the prior's lattice, halves away from zero, and hands them on some thousand at a time.
+/// Rounds points to the prior's lattice and hands them on some thousand at a time.
 class PointBuffer {
  public:
   explicit PointBuffer(PriorWriter& writer) : writer_(writer) { points_.reserve(capacity); }
@@ -53,11 +54,7 @@ class PointBuffer {
     common_.set_sigma(static_cast<float>(sigma_m));
   }
 
-  /// In lattice steps, as std::round, which is a call.
-  static std::int64_t nearest(double metres) {
-    const double steps = metres * 1000;
-    return static_cast<std::int64_t>(steps + std::copysign(0.5, steps));
-  }
+  static std::int64_t nearest(double metres) { return static_cast<std::int64_t>(lattice_steps(metres)); }
 
   static constexpr std::size_t capacity = 4096;   // stays in the cache
   static constexpr std::int64_t farthest_from_corner = 1'000'000'000;

@@ -5,19 +5,19 @@
 #include <string>
 
 #include <priormap/core/error.hpp>
+#include <priormap/geodesy/lattice.hpp>
 #include <priormap/geodesy/tile_grid.hpp>
 
 namespace priormap {
 
 constexpr double lattice_step = 0.001;   ///< [CRS units]
 
-/// A coordinate on the lattice of a CRS: whole thousandths of its unit, halves upwards.
+/// A coordinate on the lattice of a CRS.
 /// @throws Error when it is no number or beyond 10^9 units.
 inline std::int64_t to_lattice(double value) {
-  const double scaled = value * 1000.0 + 0.5;
-  if (!(std::abs(scaled) < 1e12)) throw Error("a point of the prior has a coordinate that is no number or out of range");
-  const auto truncated = static_cast<std::int64_t>(scaled);
-  return truncated - (scaled < static_cast<double>(truncated) ? 1 : 0);
+  const double steps = lattice_steps(value);
+  if (!(std::abs(steps) < 1e12)) throw Error("a point of the prior has a coordinate that is no number or out of range");
+  return static_cast<std::int64_t>(steps);
 }
 
 inline std::int32_t to_height_mm(double z) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include <priormap/geodesy/lattice.hpp>
+
 // Loops over a line are compiled for AVX2 as well, and the loader takes what the processor has. Without fused multiply-add: the results are the same.
 #if defined(__x86_64__)
 #define PRIORMAP_ALSO_AVX2 __attribute__((target_clones("avx2", "default")))
@@ -18,12 +20,6 @@ namespace {
 
 /// Beyond this difference of slope between its two sides a cell lies on a step, such as a roof's edge.
 constexpr double step_slope = 1;
-
-/// In whole thousandths: adding and taking away 1.5 * 2^52 rounds to the nearest, without a library call.
-inline double thousandths(double v) {
-  constexpr double rounding = 6755399441055744.0;
-  return (v * 1000 + rounding) - rounding;
-}
 
 /// The step of height from a place to the next, given the heights before and after: the mean of both sides, or the flatter side where they
 /// differ by more than `limit`, or the one that is known. NaN where neither is. Without branches, for a line at once.
@@ -82,7 +78,7 @@ class NormalRule {
 class LatticeArea {
  public:
   explicit LatticeArea(const Bounds2& area)
-      : min_x_(thousandths(area.min_x)), min_y_(thousandths(area.min_y)), max_x_(thousandths(area.max_x)), max_y_(thousandths(area.max_y)) {}
+      : min_x_(lattice_steps(area.min_x)), min_y_(lattice_steps(area.min_y)), max_x_(lattice_steps(area.max_x)), max_y_(lattice_steps(area.max_y)) {}
 
   bool contains(double x, double y) const { return (x >= min_x_) & (x < max_x_) & (y >= min_y_) & (y < max_y_); }
   std::int32_t x_steps(double x) const { return static_cast<std::int32_t>(x - min_x_); }
@@ -93,7 +89,7 @@ class LatticeArea {
     std::int32_t *to_x = line.x.data(), *to_y = line.y.data(), *to_z = line.z.data();
     const std::size_t count = line.z.size();
     for (std::size_t i = 0; i < count; ++i) {
-      const double at_x = thousandths(x[i]), at_y = thousandths(y[i]), at_z = thousandths(z[i]);
+      const double at_x = lattice_steps(x[i]), at_y = lattice_steps(y[i]), at_z = lattice_steps(z[i]);
       const bool inside = area.contains(at_x, at_y) & (at_z == at_z);
       to_x[i] = static_cast<std::int32_t>(inside ? at_x - area.min_x_ : 0);
       to_y[i] = static_cast<std::int32_t>(inside ? at_y - area.min_y_ : 0);
@@ -122,7 +118,7 @@ class WallBuilder {
   /// From the lowest point up. @param way  a unit vector in the plane, from neighbour `a` to `b`
   void add(std::size_t a, std::size_t b, const Eigen::Vector2f& way) {
     const double step = grid_.z[b] - grid_.z[a];
-    const double x = thousandths(0.5 * (grid_.x[a] + grid_.x[b])), y = thousandths(0.5 * (grid_.y[a] + grid_.y[b]));
+    const double x = lattice_steps(0.5 * (grid_.x[a] + grid_.x[b])), y = lattice_steps(0.5 * (grid_.y[a] + grid_.y[b]));
     if (!area_.contains(x, y)) return;
     LasPoint wall = common_;
     wall.x = area_.x_steps(x);
@@ -132,7 +128,7 @@ class WallBuilder {
     const auto count = static_cast<std::size_t>(std::max(1.0, std::round(std::abs(step) / walls_.rise)));
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t part = step < 0 ? count - 1 - i : i;
-      wall.z = static_cast<std::int32_t>(thousandths(grid_.z[a] + step * (static_cast<double>(part) + 0.5) / static_cast<double>(count)));
+      wall.z = static_cast<std::int32_t>(lattice_steps(grid_.z[a] + step * (static_cast<double>(part) + 0.5) / static_cast<double>(count)));
       points_.push_back(wall);
     }
   }

@@ -74,6 +74,12 @@ TEST_F(RasterPointsTest, each_cell_with_data_is_one_point_at_its_centre) {
   EXPECT_LT((points.back().p - Eigen::Vector3d(500009.5, 4999999.5, 9)).norm(), 1e-9);
 }
 
+TEST_F(RasterPointsTest, halves_of_a_thousandth_go_upwards) {
+  const auto points = read(write({.value = [](double col, double) { return (2 * col - 9) * 0.0625; }}), utm, utm);
+  ASSERT_EQ(points.size(), 80u);
+  for (const Point& point : points) EXPECT_NEAR(point.p.z(), (2 * std::floor(point.p.x() - 500000) - 9) * 0.0625 + 0.0005, 1e-6) << point.p.transpose();
+}
+
 TEST_F(RasterPointsTest, the_normal_of_a_plane_is_the_planes_also_at_the_edge_and_beside_holes) {
   const auto points = read(write({.value = [](double col, double row) { return col == 4 && row == 4 ? std::nan("") : 0.5 * col - 0.25 * row; }}), utm, utm);
   const Eigen::Vector3f expected = Eigen::Vector3f(-0.5f, -0.25f, 1).normalized();  // rows go south
