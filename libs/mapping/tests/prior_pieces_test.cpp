@@ -13,21 +13,29 @@ Eigen::Isometry3d pose(double x, double y, double yaw) {
 
 constexpr PieceNoise noise{0.1, 1e6, 1e6};   // no kernel
 
-TEST(PriorPieces, TheEquationsAreTheDerivativeOfTheSquaredResidual) {
+TEST(PriorPieces, TheEquationsAreTheDerivativesOfTheSquaredResidual) {
   const Eigen::Isometry3d T = pose(3, 4, 0.7);
   const Eigen::Vector3d p_sensor(8, -2, 1), normal = Eigen::Vector3d(1, 2, 0.3).normalized();
-  PlaneMatch match{T * p_sensor, normal, 0.2, 0.01};
-  const Eigen::Vector3d on_plane = match.p_map - match.residual_m * normal;
-  const auto cost = [&](const Vector9d& z) {
+  const auto match_at = [&](double residual_m) { return PlaneMatch{T * p_sensor, normal, residual_m, 0.01}; };
+  const auto cost = [&](double residual_m, const Vector9d& z) {
+    const Eigen::Vector3d on_plane = T * p_sensor - residual_m * normal;
     const double r = normal.dot(retract(T, z.head<6>()) * p_sensor - on_plane - z.tail<3>());
     return 0.5 * r * r / (0.1 * 0.1 + 0.01);
   };
-  const PieceEquations e = equations_of(match, T, Eigen::Vector3d::Zero(), 0.1, 1e6);
-  constexpr double step = 1e-5;
+  const PieceEquations off = equations_of(match_at(0.2), T, Eigen::Vector3d::Zero(), 0.1, 1e6);
   for (int i = 0; i < 9; ++i) {
-    const Vector9d d = step * Vector9d::Unit(i);
-    EXPECT_NEAR(e.g[i], (cost(d) - cost(-d)) / (2 * step), 1e-4) << i;
+    const Vector9d d = 1e-5 * Vector9d::Unit(i);
+    EXPECT_NEAR(off.g[i], (cost(0.2, d) - cost(0.2, -d)) / 2e-5, 1e-4) << i;
   }
+  const PieceEquations on = equations_of(match_at(0), T, Eigen::Vector3d::Zero(), 0.1, 1e6);   // where Gauss and Newton agree
+  EXPECT_TRUE(off.H.isApprox(on.H));
+  constexpr double step = 1e-4;
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 9; ++j) {
+      const Vector9d a = step * Vector9d::Unit(i), b = step * Vector9d::Unit(j);
+      const double second = (cost(0, a + b) - cost(0, a - b) - cost(0, b - a) + cost(0, -a - b)) / (4 * step * step);
+      EXPECT_NEAR(on.H(i, j), second, 1e-3) << i << ", " << j;
+    }
 }
 
 TEST(PriorPieces, WhatStraysFromTheKnownOffsetIsAnOutlier) {
