@@ -102,7 +102,13 @@ void check_fits(const Crs& asked, const GeoPoint& place, const Events& events) {
               ", the data lie at " + where.str() + fitting_zone(asked, place));
 }
 
-const char* remedy = "; declare them with --source-crs H+V (such as EPSG:27700+5701) or --assume-vertical V (such as EPSG:5773)";
+std::string remedy(const std::string& vertical) { return "; say --assume-vertical " + vertical + " if they are in it"; }
+
+/// Ellipsoidal heights belong to a horizontal CRS and cannot be assumed by themselves.
+std::string remedy_for(const Crs& asked) {
+  const auto vertical = asked.vertical();
+  return vertical ? remedy(vertical->name()) : "; declare them with --source-crs";
+}
 
 /// The vertical part that heights are declared in by all inputs alike; nothing where none declares any.
 std::optional<Crs> common_vertical(const std::vector<InputCrs>& inputs) {
@@ -118,7 +124,7 @@ std::optional<Crs> common_vertical(const std::vector<InputCrs>& inputs) {
   }
   if (!common) return std::nullopt;
   for (const InputCrs& input : inputs)
-    if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, those of other inputs are in " + common->name() + remedy);
+    if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, those of other inputs are in " + common->name() + remedy(common->name()));
   return common;
 }
 
@@ -159,11 +165,11 @@ Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& 
   if (!options.crs.empty() && middle) check_fits(asked, best_place(asked, options, *middle), events);
   if (asked.has_vertical()) {
     for (const InputCrs& input : inputs)
-      if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, but the prior is asked for in " + asked.name() + remedy);
+      if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, but the prior is asked for in " + asked.name() + remedy_for(asked));
     return asked;
   }
   if (const auto vertical = common_vertical(inputs)) return with_heights_in_metres(asked, *vertical);
-  if (!inputs.empty()) events.warn(inputs[0].file + ": heights are undeclared and stay as they are (\"vertical\": null)" + remedy);
+  if (!inputs.empty()) events.warn(inputs[0].file + ": heights are undeclared and stay as they are (\"vertical\": null); --assume-vertical V, such as EPSG:7837, says in which vertical CRS they are");
   return asked;
 }
 

@@ -62,7 +62,7 @@ TEST(PriorCrs, a_named_vertical_crs_from_undeclared_heights_is_refused_with_the_
   const Resolved resolved = resolve(with([](auto& o) { o.crs = "EPSG:25832+7837"; }), {"EPSG:25832"});
   EXPECT_FALSE(resolved.crs);
   EXPECT_NE(resolved.error.find("input.tif: heights are undeclared"), std::string::npos);
-  EXPECT_NE(resolved.error.find("--source-crs"), std::string::npos);
+  EXPECT_NE(resolved.error.find("say --assume-vertical EPSG:7837 if they are in it"), std::string::npos) << resolved.error;
 }
 
 TEST(PriorCrs, the_users_word_declares_heights) {
@@ -88,6 +88,7 @@ TEST(PriorCrs, unusable_systems_are_refused) {
   EXPECT_NE(error("", "EPSG:4979").find("ellipsoidal"), std::string::npos);
   EXPECT_NE(resolve({}, {"EPSG:25832+7837", "EPSG:25832+5773"}).error.find("--crs H+V"), std::string::npos);
   EXPECT_NE(resolve({}, {"EPSG:25832+7837", "EPSG:25832"}).error.find("undeclared"), std::string::npos);
+  EXPECT_NE(resolve({}, {"EPSG:25832+7837", "EPSG:25832"}).error.find("say --assume-vertical EPSG:7837 if"), std::string::npos);
   EXPECT_NE(resolve(with([](auto& o) { o.assume_vertical = "EPSG:25832"; }), {"EPSG:25832"}).error.find("no vertical CRS"), std::string::npos);
   EXPECT_NE(resolve(with([](auto& o) { o.source_crs = "EPSG:5773"; }), {"EPSG:25832"}).error.find("heights only"), std::string::npos);
 }

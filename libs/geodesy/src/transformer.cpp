@@ -23,11 +23,15 @@ struct HeightRule {
 
 double signed_height_unit_m(const Crs& crs) { return (crs.heights_point_down() ? -1 : 1) * crs.vertical_unit_m(); }
 
+std::string remedy(const Crs& target) {
+  const auto vertical = target.vertical();
+  return vertical ? "; say --assume-vertical " + vertical->name() + " if they are in it" : "";
+}
+
 HeightRule height_rule(const Crs& source, const Crs& target) {
   if (!target.has_vertical()) return {};
   if (!source.has_vertical())
-    throw CrsError("heights of " + source.human_name() + " are undeclared and cannot become heights of " + target.human_name() +
-                   "; declare them by --source-crs H+V or --assume-vertical V");
+    throw CrsError("heights of " + source.human_name() + " are undeclared and cannot become heights of " + target.human_name() + remedy(target));
   if (source.same_vertical_datum(target)) return {false, signed_height_unit_m(source) / signed_height_unit_m(target)};
   return {true, 1};
 }
