@@ -2,11 +2,13 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <priormap/cli/tool_app.hpp>
 #include <priormap/core/error.hpp>
 #include <priormap/evaluation/evaluate.hpp>
+#include <priormap/evaluation/height_reference.hpp>
 #include <priormap/evaluation/trajectory_file.hpp>
 
 namespace {
@@ -14,7 +16,7 @@ namespace {
 using namespace priormap;
 
 struct Arguments {
-  std::string reference, estimate, format = "auto", align = "none";
+  std::string reference, estimate, format = "auto", align = "none", assume_vertical;
   std::optional<std::string> crs, kitti_calib;
   std::vector<double> reference_extrinsic;
   bool json = false;
@@ -51,13 +53,16 @@ int main(int argc, char** argv) {
   app.choice("--format", arguments.format, {"auto", "tum", "kitti", "csv"}, "format of both files");
   app.choice("--align", arguments.align, {"none", "first", "se3", "sim3"}, "lay the estimate on the reference first: by the first poses, or by least squares");
   app.option("--crs", arguments.crs, {"CRS of csv files that have no run.json or frame.json beside them, such as EPSG:25832+7837"});
+  app.option("--assume-vertical", arguments.assume_vertical, {"vertical CRS in which undeclared heights of either are taken to be, such as EPSG:7837"});
   app.option("--kitti-calib", arguments.kitti_calib, {"KITTI calib.txt: the reference is camera 0's and becomes the velodyne's, z up"});
   app.option("--reference-extrinsic", arguments.reference_extrinsic, {"x,y,z,qx,qy,qz,qw: pose of the estimate's sensor in the reference's body", "m"});
   app.flag("--json", arguments.json, "one JSON object instead of text");
   app.options(options);
   return app.run(argc, argv, [&](const cli::ToolContext& context) {
     options.align = alignment(arguments.align);
-    const auto evaluation = evaluate_trajectory(read_reference(arguments), read_estimate(arguments), options, context.events);
+    Trajectory reference = read_reference(arguments), estimate = read_estimate(arguments);
+    settle_heights({arguments.reference, reference}, {arguments.estimate, estimate}, arguments.assume_vertical, context.events);
+    const auto evaluation = evaluate_trajectory(std::move(reference), std::move(estimate), options, context.events);
     std::cout << (arguments.json ? to_json(evaluation) : to_text(evaluation));
   });
 }

@@ -13,3 +13,11 @@ awk -F, 'NR > 1 { print $1, $3, $4, $5, 0, 0, 0, 1 }' truth/trajectory.csv >metr
 fails_with 1 "only the reference is georeferenced (EPSG:25832)" evaltraj --reference truth/trajectory.csv --estimate metric.txt
 echo 'not json' >truth/frame.json
 fails_with 1 "frame.json: is no JSON object" evaltraj --reference truth/trajectory.csv --estimate estimate/trajectory.csv
+# Undeclared heights are told apart from declared ones, by file and with a remedy.
+echo '{"crs": "EPSG:25832+7837"}' >truth/frame.json
+fails_with 1 "estimate/trajectory.csv: its heights are undeclared (EPSG:25832), those of truth/trajectory.csv are in EPSG:25832+7837; say --assume-vertical EPSG:7837" \
+  evaltraj --reference truth/trajectory.csv --estimate estimate/trajectory.csv
+succeeds evaltraj --reference truth/trajectory.csv --estimate estimate/trajectory.csv --assume-vertical EPSG:7837
+[ ! -s stderr ] || die "warns although the heights are declared"
+succeeds evaltraj --reference estimate/trajectory.csv --estimate truth/trajectory.csv
+expect_in stderr "estimate/trajectory.csv: its heights are undeclared"
