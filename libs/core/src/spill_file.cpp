@@ -75,6 +75,7 @@ SpillFile::Piece SpillFile::append(std::span<const std::byte> bytes) {
 void SpillFile::read(Piece piece, std::byte* target) const {
   constexpr std::size_t ahead = std::size_t(1) << 16;
   thread_local Window window;
+  if (piece.size == 0) return;
   const bool same_file = window.file == number_, in_row = same_file && window.end_of_last == piece.offset;
   if (!same_file) window.bytes.clear();
   window.file = number_;
