@@ -1,6 +1,8 @@
 #include "drive_estimate.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <functional>
 
 #include <priormap/registration/scan_reducer.hpp>
 
@@ -17,18 +19,30 @@ struct Keyframe {
   Matrix6d motion_covariance;   ///< from the keyframe before, tangent at this one
 };
 
+/// The scans that end before a gap in the odometry, or with the drive.
+std::vector<bool> last_before_gaps(const std::vector<ScanRecord>& records) {
+  std::vector<bool> last(records.size());
+  bool gap_follows = true;
+  for (std::size_t i = records.size(); i-- > 0;) {
+    const OdometryStep& step = records[i].odometry;
+    if (i && !step.joined && !step.began_anew) continue;
+    last[i] = gap_follows;
+    gap_follows = step.began_anew;
+  }
+  return last;
+}
+
 std::vector<Keyframe> keyframes_of(const std::vector<ScanRecord>& records, const EstimateOptions& options) {
   std::vector<Keyframe> keyframes;
   Matrix6d carried = Matrix6d::Zero();
-  std::size_t last_joined = records.size() - 1;
-  while (last_joined > 0 && !records[last_joined].odometry.joined) --last_joined;
+  const std::vector<bool> before_gap = last_before_gaps(records);
   for (std::size_t i = 0; i < records.size(); ++i) {
     const OdometryStep& step = records[i].odometry;
     if (step.began_anew) carried += unknown_gap_covariance();
-    if (i && !step.joined) continue;   // lost: what comes after is matched to the same local map, or to a new one
+    if (i && !step.joined && !step.began_anew) continue;   // lost: what comes after is matched to the same local map
     if (i && !step.figures.converged) carried += carried_covariance();
     const bool far = keyframes.empty() || (step.T_odom_sensor.translation() - records[keyframes.back().record].odometry.T_odom_sensor.translation()).norm() >= options.keyframe_m;
-    if (!far && i != last_joined) continue;
+    if (!far && !before_gap[i] && !step.began_anew) continue;
     keyframes.push_back({i, options.motion_scale * options.motion_scale * covariance_of(step.information) + carried});
     carried.setZero();
   }
@@ -100,21 +114,23 @@ class DriveGraph {
     return graph.marginals();
   }
 
-  /// Adds a variance in map axes that all poses share.
-  void add_common(const Eigen::Vector3d& variance, std::vector<Matrix6d>& covariances) const {
+  /// Adds what all poses have in common.
+  void add_common(const CommonVariance& common, std::vector<Matrix6d>& covariances) const {
     for (std::size_t k = 0; k < size(); ++k) {
       const Eigen::Matrix3d R = poses_[k].linear();
-      covariances[k].bottomRightCorner<3, 3>() += R.transpose() * variance.asDiagonal() * R;
+      covariances[k].topLeftCorner<3, 3>() += common.yaw_rad2 * R.row(2).transpose() * R.row(2);
+      covariances[k].bottomRightCorner<3, 3>() += R.transpose() * common.position_m2.asDiagonal() * R;
     }
   }
 
-  /// All scans: those between keyframes ride along, corrected little by little.
-  std::vector<EstimatedPose> all_poses(const std::vector<Matrix6d>& covariances) const {
+  /// All scans: those between keyframes ride along, corrected little by little; over a gap in the odometry with the one before.
+  std::vector<EstimatedPose> all_poses(const std::vector<Matrix6d>& covariances, const std::vector<bool>& contradicted) const {
     std::vector<EstimatedPose> poses(records_.size());
     for (std::size_t k = 0; k < size(); ++k) {
-      const std::size_t begin = keyframes_[k].record, next = std::min(k + 1, size() - 1);
-      const std::size_t end = k + 1 < size() ? keyframes_[k + 1].record : records_.size();
+      const std::size_t begin = keyframes_[k].record, end = k + 1 < size() ? keyframes_[k + 1].record : records_.size();
+      const std::size_t next = k + 1 < size() && !record(k + 1).odometry.began_anew ? k + 1 : k;
       const Eigen::Isometry3d T_map_odom = poses_[k] * T_odom(k).inverse(), T_map_odom_next = poses_[next] * T_odom(next).inverse();
+      double num_lost = 0;
       for (std::size_t i = begin; i < end; ++i) {
         const OdometryStep& step = records_[i].odometry;
         const double share = static_cast<double>(i - begin) / static_cast<double>(end - begin);
@@ -123,7 +139,9 @@ class DriveGraph {
         const Matrix6d A = adjoint(step.T_odom_sensor.inverse() * T_odom(k));
         poses[i].covariance = A * covariances[k] * A.transpose();
         poses[i].velocity = step.velocity;
-        if (i != begin) poses[i].covariance += step.joined ? covariance_of(step.information) : carried_covariance();
+        poses[i].contradicted = contradicted[k];
+        num_lost = i == begin || step.joined ? 0 : num_lost + 1;
+        if (i != begin) poses[i].covariance += num_lost > 0 ? Matrix6d(num_lost * num_lost * carried_covariance()) : covariance_of(step.information);
       }
     }
     return poses;
@@ -165,14 +183,17 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
       pieces.clear_matches();
       // Coarse to fine: until height and tilt are known, what strays is not yet an outlier.
       const double coarse = pass == 0 ? 3 : 1;
-      const PieceNoise noise{how.surface_sigma_m, coarse * how.kernel_width, coarse * how.ground_kernel_width};
+      const PieceNoise noise{how.surface_sigma_m, how.ground_surface_sigma_m, coarse * how.kernel_width, coarse * how.ground_kernel_width};
       compare([&](std::size_t k, const Eigen::Isometry3d& T, const std::vector<PlaneMatch>& matches) { pieces.add(k, T, matches, noise); });
     }
     marginals = graph.estimate(pieces, sigmas, weights);
     if (pass + 1 < how.passes) sigmas = pieces.estimated_sigmas(stated, sigmas, marginals.pieces, weights);
   }
-  graph.add_common(pieces.common_variance(sigmas, how.common_share), marginals.poses);
-  return graph.all_poses(marginals.poses);
+  graph.add_common(pieces.common_variance(sigmas, how.common_share, how.ground_common_share), marginals.poses);
+  const std::vector<bool> contradicted = pieces.contradicted(graph.size());
+  if (std::ranges::all_of(contradicted, std::identity()))   // nowhere is the drive known to be
+    for (Matrix6d& covariance : marginals.poses) covariance += unknown_gap_covariance();
+  return graph.all_poses(marginals.poses, contradicted);
 }
 
 }  // namespace priormap

@@ -96,7 +96,7 @@ class JointMethod : public MappingMethod {
   Verdict verdict_by_prior() const {
     if (!last_match_ || last_match_->share < outside_share) return Verdict::outside_prior;
     if (!last_match_->figures.accepted) return Verdict::dead_reckoned;
-    return last_match_->share < weak_share ? Verdict::weak : Verdict::anchored;
+    return Verdict::anchored;
   }
 
   JointMethodOptions options_;

@@ -59,9 +59,12 @@ void Mapper::exchange(StateArchive& archive) {
 std::vector<MappedScan> Mapper::finish(const ReadScan& read_again) {
   const std::vector<EstimatedPose> poses = state_->method->finish(read_again);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    state_->scans[i].T_map_sensor = poses[i].T_map_sensor;
-    state_->scans[i].covariance = poses[i].covariance;
-    state_->scans[i].velocity = poses[i].velocity;
+    MappedScan& scan = state_->scans[i];
+    scan.T_map_sensor = poses[i].T_map_sensor;
+    scan.covariance = poses[i].covariance;
+    scan.velocity = poses[i].velocity;
+    scan.contradicted = poses[i].contradicted;
+    judge(scan);
   }
   return state_->scans;
 }

@@ -20,6 +20,7 @@ struct EstimatedPose {
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
   Matrix6d covariance = Matrix6d::Zero();
   Vector6d velocity = Vector6d::Zero();   ///< rad/s, m/s in sensor axes
+  bool contradicted = false;              ///< by the walls of the prior
 };
 
 /// Scans [first, last) of a source, to be placed in stretches, `jobs` at once.

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 
 #include <priormap/registration/register_joint.hpp>
@@ -13,6 +14,8 @@ class OffsetVotes {
   void add(const PlaneMatch& match);
   /// In map axes, up to 2.5 m each way in steps of 0.25 m; where walls leave a choice, the nearest to none.
   Eigen::Vector3d likeliest() const;
+  float most() const { return *std::max_element(votes_.begin(), votes_.end()); }   ///< voices for one offset,
+  float all() const { return all_; }                                               ///< and in all
 
  private:
   static constexpr int reach = 10, side = 2 * reach + 1;

@@ -3,20 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "street_view.hpp"
 
 namespace priormap {
 namespace {
 
+constexpr double level_ground = 0.9;   // upright normals are above
+
 /// A surfel that does not lie in the plane (hedges and cars on the ground, the ground before a wall) tells nothing.
 std::optional<PieceKind> kind_of(const PlaneMatch& match, const Eigen::Vector3d& sensor) {
-  constexpr double most_spread_m = 0.15;
-  if (match.scan_variance_m2 > most_spread_m * most_spread_m) return std::nullopt;
-  const double up = std::abs(match.normal.z());
+  constexpr double most_spread_m = 0.15, most_ground_spread_m = 0.08;
+  const double up = std::abs(match.normal.z()), spread_m = up < level_ground ? most_spread_m : most_ground_spread_m;
+  if (match.scan_variance_m2 > spread_m * spread_m) return std::nullopt;
   if (up < steepest_roof) return match.feature == PointCloud::no_feature ? PieceKind::wall : PieceKind::building;
   if (is_above_street(match.p_map - sensor)) return std::nullopt;
-  return up < 0.9 ? PieceKind::slope : PieceKind::ground;
+  return up < level_ground ? PieceKind::slope : PieceKind::ground;
 }
 
 /// Ground tells of height and tilt. What its slopes tell of the place is little, and errors that hang together over many pieces outweigh it.
@@ -64,7 +67,11 @@ void PiecesOfPrior::vote(const Eigen::Isometry3d& T_map_sensor, const std::vecto
 }
 
 void PiecesOfPrior::take_likeliest_offsets() {
-  for (const auto& [id, votes] : votes_) pieces_[id].offset_m = votes.likeliest();
+  for (const auto& [id, votes] : votes_) {
+    pieces_[id].offset_m = votes.likeliest();
+    pieces_[id].most_voices = votes.most();
+    pieces_[id].voices = votes.all();
+  }
   votes_.clear();
 }
 
@@ -90,7 +97,8 @@ void PiecesOfPrior::add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const s
     const bool ground = piece.kind == PieceKind::ground;
     PlaneMatch heard = ground ? levelled(match) : match;
     if (piece.kind == PieceKind::building) heard.residual_m += heard.normal.dot(piece.offset_m);   // compared where it had been moved to
-    const PieceEquations one = equations_of(heard, T_map_sensor, piece.offset_m, noise.surface_sigma_m, ground ? noise.ground_kernel_width : noise.kernel_width);
+    const PieceEquations one = equations_of(heard, T_map_sensor, piece.offset_m, ground ? noise.ground_sigma_m : noise.surface_sigma_m,
+                                            ground ? noise.ground_kernel_width : noise.kernel_width);
     PieceEquations& sum = equations[*id];
     sum.H += one.H;
     sum.g += one.g;
@@ -119,7 +127,7 @@ void PiecesOfPrior::take_offsets(const PoseGraph& graph) {
 /// taken for granted.
 PieceSigmas PiecesOfPrior::estimated_sigmas(const PieceSigmas& stated, const PieceSigmas& used, const std::vector<Eigen::Matrix3d>& covariances,
                                             const std::vector<double>& weights) const {
-  constexpr double stated_counts = 10, least_m = 0.02, most_m = 3;
+  constexpr double stated_counts = 3, least_m = 0.01, most_m = 3;
   PieceSigmas estimated;
   for (const PieceKind kind : piece_kinds) {
     double squares = stated_counts * stated[kind] * stated[kind], redundancy = stated_counts;
@@ -134,11 +142,33 @@ PieceSigmas PiecesOfPrior::estimated_sigmas(const PieceSigmas& stated, const Pie
   return estimated;
 }
 
-Eigen::Vector3d PiecesOfPrior::common_variance(const PieceSigmas& sigmas, double common_share) const {
-  const auto count = [&](PieceKind kind) { return std::count_if(pieces_.begin(), pieces_.end(), [&](const Piece& piece) { return piece.kind == kind; }); };
-  const auto of = [&](PieceKind kind) { return count(kind) ? common_share * sigmas[kind] * sigmas[kind] : 0; };
-  const double level = of(count(PieceKind::building) ? PieceKind::building : PieceKind::wall);
-  return {level, level, of(PieceKind::ground)};
+/// Where scans and prior are of one place, most of what is seen near a wall agrees on where that lies; elsewhere what lies near by chance does not.
+std::vector<bool> PiecesOfPrior::contradicted(std::size_t num_poses) const {
+  constexpr std::size_t around = 10;         // poses before and after
+  constexpr double least_voices = 300;
+  constexpr double building_agreement = 0.5, wall_agreement = 0.48;   // towns agree by 0.70 to 0.83 and 0.53 to 0.63, wrong places by 0.28 to 0.38 and 0.38 to 0.43
+  std::vector<std::vector<PieceId>> seen(num_poses);
+  for (const PieceFactor& factor : factors_) seen[factor.pose].push_back(factor.piece);
+  std::vector<bool> result(num_poses);
+  for (std::size_t k = 0; k < num_poses; ++k) {
+    std::set<PieceId> pieces;
+    for (std::size_t j = k < around ? 0 : k - around; j < std::min(num_poses, k + around + 1); ++j) pieces.insert(seen[j].begin(), seen[j].end());
+    double voices = 0, surplus = 0;
+    for (const PieceId id : pieces) {
+      const Piece& piece = pieces_[id];
+      voices += piece.voices;
+      surplus += piece.most_voices - (piece.kind == PieceKind::building ? building_agreement : wall_agreement) * piece.voices;
+    }
+    result[k] = voices >= least_voices && surplus < 0;
+  }
+  return result;
+}
+
+CommonVariance PiecesOfPrior::common_variance(const PieceSigmas& sigmas, double level_share, double ground_share) const {
+  const auto has = [&](PieceKind kind) { return std::ranges::any_of(pieces_, [&](const Piece& piece) { return piece.kind == kind; }); };
+  const auto of = [&](PieceKind kind, double share) { return has(kind) ? share * sigmas[kind] * sigmas[kind] : 0; };
+  const double level = of(has(PieceKind::building) ? PieceKind::building : PieceKind::wall, level_share);
+  return {{level, level, of(PieceKind::ground, ground_share)}, level / (4 * range_m_ * range_m_)};
 }
 
 }  // namespace priormap

@@ -35,12 +35,19 @@ struct PieceKey {
 /// How far real surfaces stray from those of their piece of the prior, the piece's offset apart.
 struct PieceNoise {
   double surface_sigma_m;
+  double ground_sigma_m;        ///< roads are smoother than facades
   double kernel_width;          ///< Geman-McClure, in standard deviations
   double ground_kernel_width;   ///< the same on the ground, where what does not belong to it is all to one side
 };
 
 /// Normal equations of one comparison. @param offset_m  of the piece, as far as it is known: what strays from there is an outlier
 PieceEquations equations_of(const PlaneMatch& match, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, double surface_sigma_m, double kernel_width);
+
+/// What all poses have in common, in map axes.
+struct CommonVariance {
+  Eigen::Vector3d position_m2;
+  double yaw_rad2;   ///< what hangs together within sight turns the view from its one end to the other
+};
 
 /// The pieces of the prior along a drive, and what the scans say of them. A piece may lie off as a whole. Its errors are the same in all scans that see it: it
 /// counts once, however many there are.
@@ -62,9 +69,11 @@ class PiecesOfPrior {
   /// What the offsets say about the sigmas of each kind. @param stated  beforehand, counted as ten pieces' worth; @param used  in the graph that gave offsets and covariances
   PieceSigmas estimated_sigmas(const PieceSigmas& stated, const PieceSigmas& used, const std::vector<Eigen::Matrix3d>& covariances,
                                const std::vector<double>& weights) const;
-  /// How sure the prior is as a whole: the errors of its pieces have a share of their variance in common, which no number of pieces averages out. In map axes; zero without pieces.
+  /// How sure the prior is as a whole: the errors of its pieces have a share of their variance in common, which no number of pieces averages out. Zero without pieces.
   /// @param sigmas  of the kinds of pieces
-  Eigen::Vector3d common_variance(const PieceSigmas& sigmas, double common_share) const;
+  CommonVariance common_variance(const PieceSigmas& sigmas, double level_share, double ground_share) const;
+  /// Around which poses the prior's walls are not where the scans see walls: the poses are wrong, or the prior is of another place. What knows few walls contradicts nothing.
+  std::vector<bool> contradicted(std::size_t num_poses) const;
   std::size_t size() const { return pieces_.size(); }
 
  private:
@@ -72,6 +81,7 @@ class PiecesOfPrior {
     PieceKind kind;
     Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
     std::size_t times_seen = 0;
+    double most_voices = 0, voices = 0;   // for that offset, and in all
   };
   /// The piece that a comparison is with; none where it tells nothing.
   std::optional<PieceId> piece_of(const PlaneMatch& match, const Eigen::Vector3d& sensor);

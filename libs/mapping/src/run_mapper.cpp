@@ -109,10 +109,15 @@ void warn_of_idle_times(const RunOptions& options, const Events& events) {
   if (options.preset == "paper" && !asked.empty() && asked != "none") events.warn("--point-times has no effect with --preset paper, which takes sweeps as they are");
 }
 
-void warn_of_bad_start(const MappedScan& first, const Events& events) {
-  if (!first.prior || first.prior->accepted) return;
-  events.warn("the first scan does not match the prior (" + std::to_string(first.prior->num_inliers) + " of " +
-              std::to_string(first.prior->num_correspondences) + " points near it fit): check the initial pose");
+void warn_of_bad_start(const std::vector<MappedScan>& scans, const PriorPoints& prior, const Events& events) {
+  const auto num_contradicted = std::ranges::count_if(scans, [](const MappedScan& scan) { return scan.contradicted; });
+  if (num_contradicted > 0) {
+    events.warn("around " + std::to_string(num_contradicted) + " of " + std::to_string(scans.size()) + " scans the walls of " + prior.identity().name +
+                " are not where the scans see walls: check the initial pose (6 m and 12 degrees are found), and that prior and scans are of one place");
+  } else if (const MappedScan& first = scans.front(); first.prior && !first.prior->accepted) {
+    events.warn("the first scan does not match the prior (" + std::to_string(first.prior->num_inliers) + " of " + std::to_string(first.prior->num_correspondences) +
+                " points near it fit): check the initial pose");
+  }
 }
 
 PriorManifest map_manifest(const RunOptions& options, const PriorPoints* prior, const Start& start, const ScanSource& source, ScanRange range) {
@@ -209,7 +214,7 @@ std::optional<RunSummary> run_mapper(const RunOptions& options, int threads, Ove
   std::vector<MappedScan> scans = pass.mapper.finish([&](std::size_t index) { return source->read(index); });
   for (std::size_t i = 0; i < scans.size(); ++i) scans[i].step_s = pass.step_s[i];
   warn_of_empty_scans(scans, events);
-  if (prior) warn_of_bad_start(scans.front(), events);
+  if (prior) warn_of_bad_start(scans, *prior, events);
   times.estimate_s = watch.lap();
 
   RunSummary summary = summarise(scans);

@@ -55,6 +55,8 @@ Json scan_row(const MappedScan& scan) {
           {"points", scan.num_points},
           {"skipped", scan.num_skipped},
           {"verdict", to_string(scan.verdict)},
+          {"weak_direction", scan.weak_axis.isZero() ? Json() : Json(direction_text(scan.weak_axis))},
+          {"contradicted", scan.contradicted},
           {"standstill", scan.standstill},
           {"local", match(scan.local)},
           {"prior", match(scan.prior)},

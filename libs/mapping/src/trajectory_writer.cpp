@@ -63,7 +63,7 @@ std::string sigmas(const Matrix6d& covariance, const Isometry& T) {
 
 void write_csv(const fs::path& file, const std::vector<MappedScan>& scans, const MapFrame& frame) {
   OutputFile out(file);
-  out << "index,stamp_s,x_m,y_m,z_m,qx,qy,qz,qw,lon_deg,lat_deg,sigma_x_m,sigma_y_m,sigma_z_m,sigma_roll_deg,sigma_pitch_deg,sigma_yaw_deg,verdict\n";
+  out << "index,stamp_s,x_m,y_m,z_m,qx,qy,qz,qw,lon_deg,lat_deg,sigma_x_m,sigma_y_m,sigma_z_m,sigma_roll_deg,sigma_pitch_deg,sigma_yaw_deg,verdict,weak_direction\n";
   for (const auto& scan : scans) {
     const Isometry T = frame.georeferenced() ? frame.pose_to_projected(scan.T_map_sensor) : scan.T_map_sensor;
     std::string lon_lat = ",";
@@ -73,7 +73,7 @@ void write_csv(const fs::path& file, const std::vector<MappedScan>& scans, const
       lon_lat = fixed(p[0].x(), 9) + "," + fixed(p[0].y(), 9);
     }
     out << scan.index << ',' << fixed(scan.stamp_s, 9) << ',' << position_and_quaternion(T, ',') << ',' << lon_lat << sigmas(scan.covariance, T) << ','
-        << to_string(scan.verdict) << '\n';
+        << to_string(scan.verdict) << ',' << direction_text(scan.weak_axis) << '\n';
   }
   out.close();
 }

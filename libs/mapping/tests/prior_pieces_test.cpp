@@ -11,7 +11,7 @@ Eigen::Isometry3d pose(double x, double y, double yaw) {
   return T;
 }
 
-constexpr PieceNoise noise{0.1, 1e6, 1e6};   // no kernel
+constexpr PieceNoise noise{0.1, 0.1, 1e6, 1e6};   // no kernel
 
 TEST(PriorPieces, TheEquationsAreTheDerivativesOfTheSquaredResidual) {
   const Eigen::Isometry3d T = pose(3, 4, 0.7);

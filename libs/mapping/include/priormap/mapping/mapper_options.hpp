@@ -97,9 +97,11 @@ struct EstimateOptions {
   double slope_sigma_m = 0.3;
   double ground_sigma_m = 0.1;
   double surface_sigma_m = 0.1;
-  double common_share = 0.05;
+  double ground_surface_sigma_m = 0.05;
+  double common_share = 0.025;
+  double ground_common_share = 0.12;
   double kernel_width = 3;
-  double ground_kernel_width = 1.5;
+  double ground_kernel_width = 2.5;
   int passes = 3;
   PoseGraphOptions graph{.absolute_width = 0, .between_width = 0};
 
@@ -114,7 +116,9 @@ struct EstimateOptions {
     visit("slope-sigma", slope_sigma_m, {"the same of slopes, such as the edges of a surface model", "m", 1e-3, 100});
     visit("ground-sigma", ground_sigma_m, {"the same of level ground", "m", 1e-3, 100});
     visit("common-share", common_share, {"share of the variance of the pieces' offsets that all have in common, as when a whole source is shifted; the poses are no surer than that", "", 0, 1});
+    visit("ground-common-share", ground_common_share, {"the same of the ground", "", 0, 1});
     visit("surface-sigma", surface_sigma_m, {"roughness of the prior's surfaces against the real ones, within a piece", "m", 1e-3, 10});
+    visit("ground-surface-sigma", ground_surface_sigma_m, {"the same of its ground", "m", 1e-3, 10});
     visit("piece-kernel-width", kernel_width, {"width of the Geman-McClure kernel within a piece, in standard deviations", "", 0.5, 100});
     visit("ground-kernel-width", ground_kernel_width, {"the same on level ground", "", 0.5, 100});
     visit("passes", passes, {"times that the drive is compared with the prior and estimated anew, after a first look at where its walls lie", "", 1, 10});
