@@ -102,6 +102,27 @@ TEST(PriorPieces, ABuildingIsLookedForWhereItHadBeenSeen) {
   EXPECT_FLOAT_EQ(patches.patches[2].mean.x(), 8.5f);   // a roof
 }
 
+TEST(PriorPieces, WallsThatAreNotWhereScansSeeWallsContradict) {
+  const auto contradicted = [](bool here) {
+    PiecesOfPrior pieces(20, 70);
+    std::vector<PlaneMatch> walls;
+    for (int i = 0; i < 400; ++i)   // to their building, or to whatever lies near
+      walls.push_back({{10, 8, 2}, i % 2 ? Eigen::Vector3d(1, 0, 0) : Eigen::Vector3d(0, 1, 0), here ? 0.02 * (i % 7) : -1.9 + 3.8 * (i * 37 % 400) / 400, 1e-4, 7});
+    pieces.vote(pose(0, 0, 0), walls);
+    pieces.take_likeliest_offsets();
+    pieces.add(0, pose(0, 0, 0), walls, noise);
+    return pieces.contradicted(1).front();
+  };
+  EXPECT_FALSE(contradicted(true));
+  EXPECT_TRUE(contradicted(false));
+}
+
+TEST(PriorPieces, WhatKnowsFewWallsContradictsNothing) {
+  PiecesOfPrior pieces(20, 70);
+  pieces.take_likeliest_offsets();
+  EXPECT_FALSE(pieces.contradicted(1).front());
+}
+
 /// Walls across x, one a cell, each seen where it really is; the prior has them shifted.
 class ShiftedWalls : public testing::Test {
  protected:
