@@ -140,6 +140,7 @@ class DriveGraph {
         poses[i].covariance = A * covariances[k] * A.transpose();
         poses[i].velocity = step.velocity;
         poses[i].contradicted = contradicted[k];
+        poses[i].calibrated = true;
         num_lost = i == begin || step.joined ? 0 : num_lost + 1;
         if (i != begin) poses[i].covariance += num_lost > 0 ? Matrix6d(num_lost * num_lost * carried_covariance()) : covariance_of(step.information);
       }

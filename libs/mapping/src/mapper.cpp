@@ -64,7 +64,7 @@ std::vector<MappedScan> Mapper::finish(const ReadScan& read_again) {
     scan.covariance = poses[i].covariance;
     scan.velocity = poses[i].velocity;
     scan.contradicted = poses[i].contradicted;
-    judge(scan);
+    judge(scan, poses[i].calibrated);
   }
   return state_->scans;
 }

@@ -21,6 +21,7 @@ struct EstimatedPose {
   Matrix6d covariance = Matrix6d::Zero();
   Vector6d velocity = Vector6d::Zero();   ///< rad/s, m/s in sensor axes
   bool contradicted = false;              ///< by the walls of the prior
+  bool calibrated = false;                ///< whether the covariance holds against true errors
 };
 
 /// Scans [first, last) of a source, to be placed in stretches, `jobs` at once.

@@ -109,17 +109,6 @@ void warn_of_idle_times(const RunOptions& options, const Events& events) {
   if (options.preset == "paper" && !asked.empty() && asked != "none") events.warn("--point-times has no effect with --preset paper, which takes sweeps as they are");
 }
 
-void warn_of_bad_start(const std::vector<MappedScan>& scans, const PriorPoints& prior, const Events& events) {
-  const auto num_contradicted = std::ranges::count_if(scans, [](const MappedScan& scan) { return scan.contradicted; });
-  if (num_contradicted > 0) {
-    events.warn("around " + std::to_string(num_contradicted) + " of " + std::to_string(scans.size()) + " scans the walls of " + prior.identity().name +
-                " are not where the scans see walls: check the initial pose (6 m and 12 degrees are found), and that prior and scans are of one place");
-  } else if (const MappedScan& first = scans.front(); first.prior && !first.prior->accepted) {
-    events.warn("the first scan does not match the prior (" + std::to_string(first.prior->num_inliers) + " of " + std::to_string(first.prior->num_correspondences) +
-                " points near it fit): check the initial pose");
-  }
-}
-
 PriorManifest map_manifest(const RunOptions& options, const PriorPoints* prior, const Start& start, const ScanSource& source, ScanRange range) {
   PriorManifest manifest;
   if (start.crs) {
@@ -157,6 +146,19 @@ std::vector<MappedScan> placed(const std::vector<MappedScan>& scans) {
 
 std::size_t count(const std::vector<MappedScan>& scans, Verdict verdict) {
   return static_cast<std::size_t>(std::count_if(scans.begin(), scans.end(), [&](const MappedScan& s) { return s.verdict == verdict; }));
+}
+
+void warn_of_bad_start(const std::vector<MappedScan>& scans, const PriorPoints& prior, const Events& events) {
+  const auto num_contradicted = std::ranges::count_if(scans, [](const MappedScan& scan) { return scan.contradicted; });
+  if (num_contradicted > 0) {
+    events.warn("around " + std::to_string(num_contradicted) + " of " + std::to_string(scans.size()) + " scans the walls of " + prior.identity().name +
+                " are not where the scans see walls: check the initial pose (6 m and 12 degrees are found), and that prior and scans are of one place");
+  } else if (count(scans, Verdict::anchored) + count(scans, Verdict::weak) == 0) {
+    events.warn("no scan is anchored: " + prior.identity().name + " was not matched anywhere; check the initial pose");
+  } else if (const MappedScan& first = scans.front(); first.prior && !first.prior->accepted) {
+    events.warn("the first scan does not match the prior (" + std::to_string(first.prior->num_inliers) + " of " + std::to_string(first.prior->num_correspondences) +
+                " points near it fit): check the initial pose");
+  }
 }
 
 RunSummary summarise(const std::vector<MappedScan>& scans) {

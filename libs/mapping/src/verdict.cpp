@@ -20,7 +20,7 @@ std::string to_string(Verdict verdict) {
   return {};
 }
 
-void judge(MappedScan& scan) {
+void judge(MappedScan& scan, bool by_covariance) {
   constexpr double anchored_m = 0.5;
   if (scan.verdict != Verdict::anchored && scan.verdict != Verdict::weak) return;
   if (scan.contradicted) {
@@ -29,7 +29,7 @@ void judge(MappedScan& scan) {
   }
   const Eigen::Matrix3d R = scan.T_map_sensor.linear();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal(R * scan.covariance.bottomRightCorner<3, 3>() * R.transpose());
-  if (principal.eigenvalues()[2] > anchored_m * anchored_m) scan.verdict = Verdict::weak;
+  if (by_covariance && principal.eigenvalues()[2] > anchored_m * anchored_m) scan.verdict = Verdict::weak;
   if (scan.verdict == Verdict::weak) scan.weak_axis = principal.eigenvectors().col(2);
 }
 

@@ -103,7 +103,7 @@ TEST(PriorPieces, ABuildingIsLookedForWhereItHadBeenSeen) {
 }
 
 TEST(PriorPieces, WallsThatAreNotWhereScansSeeWallsContradict) {
-  const auto contradicted = [](bool here) {
+  const auto contradicted = [](bool here) -> bool {
     PiecesOfPrior pieces(20, 70);
     std::vector<PlaneMatch> walls;
     for (int i = 0; i < 400; ++i)   // to their building, or to whatever lies near

@@ -74,7 +74,7 @@ TEST_F(Run, GeoreferencedReportHoldsItsSchema) {
   options_.initial.pose = {640000.2, 5359000, 491.7, 0, 0, 0, 1};
   const RunSummary summary = run_mapper(options_, 1, Overwrite::refuse, {}).value();
   EXPECT_EQ(schema_violations(report()), "");
-  EXPECT_EQ(summary.num_anchored, 3u);
+  EXPECT_EQ(summary.num_anchored, 3u) << report()["scans"].dump();
   EXPECT_EQ(report()["totals"]["map_points"], summary.num_map_points);
   EXPECT_GT(summary.num_map_points, 1000u);
   // UTM zone 32 near 10.89 E: grid north lies 1.41 degrees clockwise of true north, a metre of map is 0.99977 m of grid.

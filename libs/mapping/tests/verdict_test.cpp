@@ -18,7 +18,7 @@ MappedScan placed(const Eigen::Vector3d& sigma_m) {
 
 TEST(Verdict, APoseThatIsHeldInEveryDirectionIsAnchored) {
   MappedScan scan = placed({0.1, 0.2, 0.05});
-  judge(scan);
+  judge(scan, true);
   EXPECT_EQ(scan.verdict, Verdict::anchored);
   EXPECT_EQ(direction_text(scan.weak_axis), "");
 }
@@ -26,7 +26,7 @@ TEST(Verdict, APoseThatIsHeldInEveryDirectionIsAnchored) {
 TEST(Verdict, AWeakPoseNamesItsDirection) {
   const auto direction = [](const Eigen::Vector3d& sigma_m) {
     MappedScan scan = placed(sigma_m);
-    judge(scan);
+    judge(scan, true);
     EXPECT_EQ(scan.verdict, Verdict::weak);
     return direction_text(scan.weak_axis);
   };
@@ -38,14 +38,23 @@ TEST(Verdict, AWeakPoseNamesItsDirection) {
 TEST(Verdict, WhatThePriorContradictsIsDeadReckonedHoweverSure) {
   MappedScan scan = placed({0.1, 0.1, 0.1});
   scan.contradicted = true;
-  judge(scan);
+  judge(scan, true);
   EXPECT_EQ(scan.verdict, Verdict::dead_reckoned);
+}
+
+TEST(Verdict, ACovarianceThatIsNotCalibratedTellsTheDirectionAlone) {
+  MappedScan scan = placed({2, 0.1, 0.1});
+  judge(scan, false);
+  EXPECT_EQ(scan.verdict, Verdict::anchored);
+  scan.verdict = Verdict::weak;
+  judge(scan, false);
+  EXPECT_EQ(direction_text(scan.weak_axis), "000");
 }
 
 TEST(Verdict, WhatIsLostStaysLost) {
   MappedScan scan = placed({9, 9, 9});
   scan.verdict = Verdict::lost;
-  judge(scan);
+  judge(scan, true);
   EXPECT_EQ(scan.verdict, Verdict::lost);
 }
 

@@ -17,8 +17,9 @@ enum class Verdict {
 std::string to_string(Verdict verdict);
 
 struct MappedScan;
-/// Takes back what matching alone said of a scan that is placed: weak and in which direction, by its covariance; dead-reckoned, where contradicted.
-void judge(MappedScan& scan);
+/// Takes back what matching alone said of a scan that is placed: dead-reckoned, where contradicted; weak, and in which direction, by its covariance.
+/// @param by_covariance  false: the covariance is not one to tell weak from anchored by, only the direction
+void judge(MappedScan& scan, bool by_covariance);
 
 /// As written to trajectory.csv and run.json: "up", or degrees clockwise from the north of the frame, "000" to "179". @param axis  unit vector; empty for zero
 std::string direction_text(const Eigen::Vector3d& axis);
