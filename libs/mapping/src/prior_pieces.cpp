@@ -5,6 +5,8 @@
 #include <optional>
 #include <set>
 
+#include <priormap/pointcloud/slope.hpp>
+
 #include "street_view.hpp"
 
 namespace priormap {
@@ -17,7 +19,7 @@ std::optional<PieceKind> kind_of(const PlaneMatch& match, const Eigen::Vector3d&
   constexpr double most_spread_m = 0.15, most_ground_spread_m = 0.08;
   const double up = std::abs(match.normal.z()), spread_m = up < level_ground ? most_spread_m : most_ground_spread_m;
   if (match.scan_variance_m2 > spread_m * spread_m) return std::nullopt;
-  if (up < steepest_roof) return match.feature == PointCloud::no_feature ? PieceKind::wall : PieceKind::building;
+  if (is_wall(up)) return match.feature == PointCloud::no_feature ? PieceKind::wall : PieceKind::building;
   if (is_above_street(match.p_map - sensor)) return std::nullopt;
   return up < level_ground ? PieceKind::slope : PieceKind::ground;
 }
@@ -61,7 +63,7 @@ std::optional<PieceId> PiecesOfPrior::piece_of(const PlaneMatch& match, const Ei
 
 void PiecesOfPrior::vote(const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches) {
   for (const PlaneMatch& match : matches) {
-    if (std::abs(match.normal.z()) >= steepest_roof) continue;
+    if (!is_wall(match.normal.z())) continue;
     if (const auto id = piece_of(match, T_map_sensor.translation())) votes_[*id].add(match);
   }
 }
@@ -77,7 +79,7 @@ void PiecesOfPrior::take_likeliest_offsets() {
 
 void PiecesOfPrior::move_buildings(PatchCloud& patches) const {
   for (SurfacePatch& patch : patches.patches) {
-    if (patch.feature == PointCloud::no_feature || std::abs(patch.normal.z()) >= steepest_roof) continue;
+    if (patch.feature == PointCloud::no_feature || !is_wall(patch.normal.z())) continue;
     const auto found = ids_.find({patch.feature, 0, 0, PieceKind::building});
     if (found != ids_.end()) patch.mean += pieces_[found->second].offset_m.cast<float>();
   }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <priormap/pointcloud/slope.hpp>
+
 #include "confidence.hpp"
 #include "street_view.hpp"
 
@@ -18,7 +20,7 @@ SurfelCloud without_roofs(const SurfelCloud& scan, const Eigen::Matrix3d& R_map_
   SurfelCloud kept{scan.origin, {}};
   kept.surfels.reserve(scan.size());
   for (const Surfel& surfel : scan.surfels)
-    if (!is_above_street((R * surfel.mean).cast<double>()) || std::abs(R.row(2).dot(normal_of(surfel, voxel_m))) < steepest_roof) kept.surfels.push_back(surfel);
+    if (!is_above_street((R * surfel.mean).cast<double>()) || is_wall(R.row(2).dot(normal_of(surfel, voxel_m)))) kept.surfels.push_back(surfel);
   return kept;
 }
 
