@@ -41,12 +41,12 @@ ResumableDirectory::Lock::~Lock() { ::close(descriptor_); }
 ResumableDirectory::ResumableDirectory(fs::path target, Overwrite overwrite, std::string marker_file)
     : output_(std::move(target), overwrite, std::move(marker_file), Workplace::own_folder), folder_(output_.temporary_path().parent_path()), lock_(folder_, output_.target()) {
   remove_leftovers();
-  if (!fs::exists(folder_ / checkpoint_name)) PendingOutputs::instance().add(folder_);
+  if (!fs::exists(checkpoint_file())) PendingOutputs::instance().add(folder_);
 }
 
 ResumableDirectory::~ResumableDirectory() {
   std::error_code error;
-  if (!fs::exists(folder_ / checkpoint_name, error)) PendingOutputs::instance().discard(folder_);
+  if (!fs::exists(checkpoint_file(), error)) PendingOutputs::instance().discard(folder_);
 }
 
 void ResumableDirectory::remove_leftovers() {
@@ -56,8 +56,10 @@ void ResumableDirectory::remove_leftovers() {
   if (error) throw IoError(folder_, "cannot be cleared: " + error.message());
 }
 
+fs::path ResumableDirectory::checkpoint_file() const { return folder_ / checkpoint_name; }
+
 std::optional<std::string> ResumableDirectory::checkpoint() const {
-  std::ifstream file(folder_ / checkpoint_name, std::ios::binary);
+  std::ifstream file(checkpoint_file(), std::ios::binary);
   std::string header;
   if (!std::getline(file, header)) return std::nullopt;
   std::ostringstream bytes;
@@ -68,7 +70,7 @@ std::optional<std::string> ResumableDirectory::checkpoint() const {
 }
 
 void ResumableDirectory::keep(const std::string& checkpoint) {
-  AtomicFile kept(folder_ / checkpoint_name, Overwrite::allow);
+  AtomicFile kept(checkpoint_file(), Overwrite::allow);
   OutputFile file(kept.temporary_path());
   file << magic << ' ' << digest_of(checkpoint) << '\n' << checkpoint;
   file.close();
@@ -78,8 +80,8 @@ void ResumableDirectory::keep(const std::string& checkpoint) {
 
 void ResumableDirectory::discard_checkpoint() {
   std::error_code error;
-  fs::remove(folder_ / checkpoint_name, error);
-  if (error) throw IoError(folder_ / checkpoint_name, "cannot be removed: " + error.message());
+  fs::remove(checkpoint_file(), error);
+  if (error) throw IoError(checkpoint_file(), "cannot be removed: " + error.message());
   PendingOutputs::instance().add(folder_);
 }
 

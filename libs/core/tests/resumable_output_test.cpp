@@ -90,6 +90,8 @@ TEST_F(ResumableOutputTest, ATornCheckpointIsNone) {
   EXPECT_EQ(begin().checkpoint(), std::nullopt);
   fs::resize_file(file, 5);
   EXPECT_EQ(begin().checkpoint(), std::nullopt);
+  EXPECT_EQ(begin().checkpoint_file(), file);
+  EXPECT_TRUE(fs::exists(file)) << "which tells it from none";
 }
 
 TEST_F(ResumableOutputTest, OneProgramAtATime) {

@@ -79,9 +79,11 @@ void map_scans(OnlinePass& pass, const ScanSource& source, ScanRange range, cons
   }
 }
 
-void resume(OnlinePass& pass, const Checkpoints& checkpoints, ScanRange range, const Events& events) {
+void resume(OnlinePass& pass, const Checkpoints& checkpoints, const fs::path& checkpoint_file, ScanRange range, const Events& events) {
   if (checkpoints.restore([&](StateArchive& archive) { pass.exchange(archive); }))
     events.inform("going on after " + std::to_string(pass.step_s.size()) + " of " + std::to_string(range.last - range.first) + " scans");
+  else if (fs::exists(checkpoint_file))
+    events.warn(checkpoint_file.string() + ": the checkpoint is damaged and cannot be gone on from; beginning anew with the first scan");
   else
     events.inform("no checkpoint of this output: beginning with the first scan");
 }
@@ -99,9 +101,12 @@ void leave_as_it_is(ResumableDirectory& output, const fs::path& directory, const
   events.inform(directory.string() + " is whole already: there is nothing to resume");
 }
 
-void warn_of_empty_scans(const std::vector<MappedScan>& scans, const Events& events) {
-  const auto num_empty = std::count_if(scans.begin(), scans.end(), [](const MappedScan& scan) { return scan.num_points == 0; });
-  if (num_empty) events.warn(std::to_string(num_empty) + " scans hold no points; the motion was carried on there");
+void warn_of_empty_scans(const std::vector<MappedScan>& scans, const ScanSource& source, const Events& events) {
+  const auto is_empty = [](const MappedScan& scan) { return scan.num_points == 0; };
+  const auto first = std::find_if(scans.begin(), scans.end(), is_empty);
+  if (first == scans.end()) return;
+  events.warn("scans that hold no points: " + std::to_string(std::count_if(first, scans.end(), is_empty)) + ", the first is " + source.file(first->index).string() +
+              "; the motion was carried on there");
 }
 
 void warn_of_idle_times(const RunOptions& options, const Events& events) {
@@ -205,7 +210,7 @@ std::optional<RunSummary> run_mapper(const RunOptions& options, int threads, Ove
   OnlinePass pass{Mapper(method, near, {start.T_map_sensor, motion_at_start(*source, range.first, range.last), period_at_start(*source, range.first, range.last)}, threads), {}};
   Checkpoints checkpoints(output, identity, options.checkpoint_s, events);
   if (options.resume)
-    resume(pass, checkpoints, range, events);
+    resume(pass, checkpoints, output.checkpoint_file(), range, events);
   else
     tell_of_checkpoint(output, events);
   times.start_s = watch.lap();
@@ -215,7 +220,7 @@ std::optional<RunSummary> run_mapper(const RunOptions& options, int threads, Ove
 
   std::vector<MappedScan> scans = pass.mapper.finish([&](std::size_t index) { return source->read(index); });
   for (std::size_t i = 0; i < scans.size(); ++i) scans[i].step_s = pass.step_s[i];
-  warn_of_empty_scans(scans, events);
+  warn_of_empty_scans(scans, *source, events);
   if (prior) warn_of_bad_start(scans, *prior, events);
   times.estimate_s = watch.lap();
 

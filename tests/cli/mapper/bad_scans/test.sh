@@ -18,7 +18,7 @@ head -6 drive/times.txt >times && mv times drive/times.txt
 cat nan/000000.bin >>drive/velodyne/000001.bin
 : >drive/velodyne/000003.bin
 succeeds mapper --scans drive --preset paper -o out
-expect_in stderr "1 scans hold no points"
+expect_in stderr "scans that hold no points: 1, the first is drive/velodyne/000003.bin; the motion was carried on there"
 expect_in out/run.json '"skipped": 1,'
 # And a drive that breaks in its middle leaves nothing behind.
 head -c 1000 drive/velodyne/000000.bin >drive/velodyne/000004.bin

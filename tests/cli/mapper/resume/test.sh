@@ -39,7 +39,7 @@ fails_with 2 'map/map-voxel was' in_a_shell run --resume --map-voxel 0.5 -o out
 height=1.8 fails_with 2 'initial_pose/initial-pose' in_a_shell run --resume -o out
 truncate -s -1 .out.unfinished/checkpoint
 succeeds in_a_shell run --resume -o out
-expect_in stderr "beginning with the first scan"
+expect_in stderr ".out.unfinished/checkpoint: the checkpoint is damaged and cannot be gone on from; beginning anew with the first scan"
 succeeds in_a_shell run --resume -o out
 expect_in stderr "whole already"
 fails_with 2 'is whole already, and of another run: configuration/map/map-voxel was' in_a_shell run --resume --map-voxel 0.5 -o out

@@ -21,6 +21,8 @@ class ResumableDirectory {
   const std::filesystem::path& temporary_path() const { return output_.temporary_path(); }
   /// What was kept last, as it was given; none: nothing, or not whole.
   std::optional<std::string> checkpoint() const;
+  /// Where it is kept: a file there without a checkpoint() is damaged.
+  std::filesystem::path checkpoint_file() const;
   /// Keeps a checkpoint in place of the last one, whole or not at all. May run in a thread of its own. @throws IoError
   void keep(const std::string& checkpoint);
   void discard_checkpoint();
