@@ -1,5 +1,7 @@
 #include <priormap/builder/bbox_filter.hpp>
 
+#include <iomanip>
+#include <sstream>
 #include <vector>
 
 #include <priormap/core/error.hpp>
@@ -15,6 +17,8 @@ Crs bbox_crs(const PriorOptions& options) {
     throw CrsError(std::string("--bbox-crs: ") + error.what());
   }
 }
+
+bool overlap(const Bounds2& a, const Bounds2& b) { return a.min_x <= b.max_x && b.min_x <= a.max_x && a.min_y <= b.max_y && b.min_y <= a.max_y; }
 
 }  // namespace
 
@@ -47,6 +51,18 @@ PointCloud BboxFilter::keep(const PointCloud& points) const {
     if (contains(p.x(), p.y())) inside.push_back(static_cast<std::uint32_t>(i));
   }
   return inside.size() == points.size() ? points : points.select(inside);
+}
+
+std::string missed_by_bbox(const PriorOptions& options, const Bounds2& data, const Crs& data_crs) {
+  const std::vector<double>& box = options.bbox;
+  std::ostringstream text;
+  text << std::setprecision(8) << "lies inside --bbox (W,S,E,N in " << options.bbox_crs << ")";
+  const auto image = data.empty() ? std::nullopt : image_bounds(data, Transformer(data_crs.horizontal(), bbox_crs(options)));
+  if (!image) return text.str();
+  const Bounds2& there = image->outer;
+  text << "; the data reach over " << there.min_x << "," << there.min_y << "," << there.max_x << "," << there.max_y;
+  if (overlap(there, {box[1], box[0], box[3], box[2]})) text << ": were the box's numbers given as S,W,N,E?";
+  return text.str();
 }
 
 }  // namespace priormap

@@ -1,5 +1,6 @@
 #include <priormap/builder/model_prior.hpp>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -301,6 +302,23 @@ SightCounts write_models(const std::vector<HashedFile>& files, Survey& survey, c
   return points;
 }
 
+/// Of all models, in the prior's CRS. Reads the files once more: for what a failure says.
+Bounds2 extent_of(const std::vector<HashedFile>& files, ModelFrames& frames, const ModelOptions& model_options) {
+  Eigen::AlignedBox3d box;
+  for (const HashedFile& file : files) {
+    read_models(file.path, reader_options(model_options), [&](BuildingModel&& model) {
+      if (model.polygons.empty()) return;
+      frames.to_prior(model, file.path.string());
+      for (ModelPolygon& polygon : model.polygons) {
+        for_each_ring(polygon.polygon, [&](Ring3& ring) {
+          for (const Eigen::Vector3d& p : ring) box.extend(p);
+        });
+      }
+    });
+  }
+  return {box.min().x(), box.min().y(), box.max().x(), box.max().y()};
+}
+
 }  // namespace
 
 void ModelOptions::validate() const {
@@ -324,7 +342,7 @@ ModelReport build_model_prior(const std::vector<std::filesystem::path>& inputs, 
   const SightCounts points = write_models(with_models, survey, prior_options, model_options, writer, sources, report, threads);
   if (report.buildings + report.bridges + report.plants + report.terrain_models == 0) {
     throw FormatError(files.front().path, prior_options.bbox.empty() ? "none of its buildings could be built"
-                                                                     : "no building lies inside --bbox (W,S,E,N in " + prior_options.bbox_crs + ")");
+                                                                     : "no building " + missed_by_bbox(prior_options, extent_of(with_models, *survey.frames(), model_options), survey.frames()->prior()));
   }
   if (prior_options.bbox.empty()) model_options.sight.refuse_blindness(points);   // a box may well hold nothing that is seen
   if (model_options.sight.is_active()) report.sight = points;

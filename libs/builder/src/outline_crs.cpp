@@ -94,7 +94,7 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
   const std::optional<double> constant_m = terrain ? outline_options.ground_height_m : std::optional(outline_options.ground_height_m.value_or(0));
   std::vector<Transformer> prior_from_outlines;
   for (const InputCrs& outline : outlines) prior_from_outlines.emplace_back(outline.crs.horizontal(), prior.horizontal(), area);
-  return {std::move(prior_from_outlines), prior, first.assumed_vertical,
+  return {std::move(prior_from_outlines), prior, area, first.assumed_vertical,
           GroundModel(std::move(terrain_heights), constant_m, constant_to_prior(first, prior)), std::move(surface_heights)};
 }
 

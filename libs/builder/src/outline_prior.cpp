@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include <priormap/builder/bbox_filter.hpp>
 #include <priormap/builder/prior_crs.hpp>
 #include <priormap/core/error.hpp>
 #include <priormap/core/hash.hpp>
@@ -118,7 +119,7 @@ OutlineReport build_outline_prior(OutlineInput input, const PriorOptions& prior_
   }
   if (all.points.sampled == 0)
     throw FormatError(input.files.front().path, prior_options.bbox.empty() ? "none of its buildings could be built"
-                                                                           : "no building lies inside --bbox (W,S,E,N in " + prior_options.bbox_crs + ")");
+                                                                           : "no building " + missed_by_bbox(prior_options, Bounds2{frames.area.west_deg, frames.area.south_deg, frames.area.east_deg, frames.area.north_deg}, Crs::parse("EPSG:4326")));
   if (prior_options.bbox.empty()) outline_options.sight.refuse_blindness(all.points);   // a box may well hold nothing that is seen
   writer.set_sources(sources);
   return {writer.finish(threads, events), all.counts, outline_options.sight.is_active() ? std::optional(all.points) : std::nullopt, std::move(diagnostics)};

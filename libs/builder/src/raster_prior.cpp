@@ -287,11 +287,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const RasterInput& inp
 
 [[noreturn]] void refuse_empty(const std::vector<RasterInput>& inputs, const PriorOptions& options) {
   if (options.bbox.empty()) throw FormatError(inputs[0].file, "holds no height: every cell is without data");
-  std::ostringstream text;
-  text << "no height lies inside --bbox (W,S,E,N in " << options.bbox_crs << "); the data reach from " << std::setprecision(10);
-  const Bounds2& b = inputs[0].facts.bounds;
-  text << b.min_x << "," << b.min_y << " to " << b.max_x << "," << b.max_y << " in " << inputs[0].crs.crs.name();
-  throw FormatError(inputs[0].file, text.str());
+  throw FormatError(inputs[0].file, "no height " + missed_by_bbox(options, inputs[0].facts.bounds, inputs[0].crs.crs));
 }
 
 }  // namespace

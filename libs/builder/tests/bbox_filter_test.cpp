@@ -40,6 +40,15 @@ TEST(BboxFilter, agrees_with_the_transformation_of_each_point) {
   EXPECT_EQ(filter.keep(points).size(), expected);
 }
 
+TEST(BboxFilter, a_box_that_missed_is_told_where_the_data_lie) {
+  const Bounds2 munich{691000, 5335000, 692000, 5336000};   // longitude 11.57, latitude 48.14
+  const std::string far = missed_by_bbox(with_bbox({7, 43, 8, 44}), munich, prior);
+  EXPECT_NE(far.find("lies inside --bbox (W,S,E,N in EPSG:4326); the data reach over 11.5"), std::string::npos) << far;
+  EXPECT_EQ(far.find("S,W,N,E"), std::string::npos) << far;
+  EXPECT_NE(missed_by_bbox(with_bbox({48.1, 11.5, 48.2, 11.6}), munich, prior).find("were the box's numbers given as S,W,N,E?"), std::string::npos);
+  EXPECT_NE(missed_by_bbox(with_bbox({1, 1, 2, 2}, "EPSG:25832"), munich, prior).find("the data reach over 691000,5335000,692000,5336000"), std::string::npos);
+}
+
 TEST(BboxFilter, neighbouring_boxes_share_no_point_and_lose_none) {
   const PointCloud points = random_points();
   const auto count = [&](double west, double south, double east, double north) {

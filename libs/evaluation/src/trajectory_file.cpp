@@ -20,6 +20,9 @@ namespace fs = std::filesystem;
   throw FormatError(file, "line " + std::to_string(row.line) + ": " + cause);
 }
 
+/// What to do about a row with too few values: a last one was cut.
+std::string if_cut(const TextRow& row, std::span<const TextRow> rows) { return &row == &rows.back() ? "; the file may end too early: fetch or copy it again" : ""; }
+
 Eigen::Isometry3d pose_of(const Eigen::Vector3d& position, double qx, double qy, double qz, double qw, const fs::path& file, const TextRow& row) {
   const Eigen::Quaterniond q(qw, qx, qy, qz);
   constexpr double written_coarsely = 1e-2;
@@ -47,7 +50,7 @@ Trajectory read_tum(const fs::path& file, std::span<const TextRow> rows) {
   Trajectory trajectory;
   for (const TextRow& row : rows) {
     const std::vector<double> n = numbers_of(file, row);
-    if (n.size() != 8) fail(file, row, std::to_string(n.size()) + " numbers instead of TUM's 8 (t x y z qx qy qz qw)");
+    if (n.size() != 8) fail(file, row, std::to_string(n.size()) + " numbers instead of TUM's 8 (t x y z qx qy qz qw)" + (n.size() < 8 ? if_cut(row, rows) : ""));
     trajectory.stamps_s.push_back(n[0]);
     trajectory.poses.push_back(pose_of({n[1], n[2], n[3]}, n[4], n[5], n[6], n[7], file, row));
   }
@@ -110,8 +113,9 @@ constexpr std::array<std::string_view, 2> lon_lat_columns{"lon_deg", "lat_deg"};
 /// The fields of one line; numbers by column.
 class CsvLine {
  public:
-  CsvLine(const fs::path& file, const TextRow& row, std::size_t width) : file_(file), row_(row), fields_(split(row.text, ',')) {
-    if (fields_.size() != width) fail(file, row, std::to_string(fields_.size()) + " fields under a header of " + std::to_string(width));
+  CsvLine(const fs::path& file, const TextRow& row, std::span<const TextRow> rows, std::size_t width) : file_(file), row_(row), fields_(split(row.text, ',')) {
+    if (fields_.size() != width)
+      fail(file, row, std::to_string(fields_.size()) + " fields under a header of " + std::to_string(width) + (fields_.size() < width ? if_cut(row, rows) : ""));
   }
   double at(std::size_t column) const {
     const std::optional<double> value = number(fields_[column]);
@@ -142,7 +146,7 @@ Trajectory read_csv(const fs::path& file, std::span<const TextRow> rows, const s
   Trajectory trajectory;
   std::vector<OxtsPose> oxts_poses;
   for (const TextRow& row : rows.subspan(1)) {
-    const CsvLine line(file, row, header.width());
+    const CsvLine line(file, row, rows, header.width());
     if (index) trajectory.indices.push_back(index_of(line.at(*index), file, row));
     if (stamp) trajectory.stamps_s.push_back(line.at(*stamp));
     if (oxts) {

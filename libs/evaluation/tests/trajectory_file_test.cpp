@@ -100,7 +100,7 @@ TEST(TrajectoryFile, SaysWhichLineIsNoPose) {
     const auto file = folder.file("bad.txt", text);
     return message_of<FormatError>([&] { read_trajectory(file, automatic, ""); });
   };
-  EXPECT_NE(reads("0 1 2 3 0 0 0 1\n1 1 2 3 0 0 0\n").find("line 2: 7 numbers"), std::string::npos);
+  EXPECT_NE(reads("0 1 2 3 0 0 0 1\n1 1 2 3 0 0 0\n").find("line 2: 7 numbers instead of TUM's 8 (t x y z qx qy qz qw); the file may end too early"), std::string::npos);
   EXPECT_NE(reads("0 nan 2 3 0 0 0 1\n").find("line 1: 'nan' is no finite number"), std::string::npos);
   EXPECT_NE(reads("0 1 2 3 0 0 0 5\n").find("not of unit length"), std::string::npos);
   EXPECT_NE(reads("1 0 0 0 0 1 0 0 0 0 -1 0\n").find("no rotation"), std::string::npos);
@@ -110,7 +110,8 @@ TEST(TrajectoryFile, SaysWhichLineIsNoPose) {
   EXPECT_NE(reads("1 2 3\n").find("neither TUM"), std::string::npos);
   EXPECT_NE(reads("index,x_m\n0,1\n").find("its header has no poses"), std::string::npos);
   EXPECT_NE(reads("x_m,y_m,z_m,qx,qy,qz,qw\n").find("holds no poses"), std::string::npos);
-  EXPECT_NE(reads("x_m,y_m,z_m,qx,qy,qz,qw\n1,2,3\n").find("3 fields under a header of 7"), std::string::npos);
+  EXPECT_NE(reads("x_m,y_m,z_m,qx,qy,qz,qw\n1,2,3\n").find("3 fields under a header of 7; the file may end too early"), std::string::npos);
+  EXPECT_EQ(reads("x_m,y_m,z_m,qx,qy,qz,qw\n1,2,3\n1,2,3,0,0,0,1\n").find("too early"), std::string::npos) << "a fault in the middle is no cut";
   EXPECT_NE(message_of<IoError>([] { read_trajectory("absent.txt", automatic, ""); }).find("absent.txt"), std::string::npos);
   EXPECT_NE(message_of<IoError>([] { read_trajectory(".", automatic, ""); }).find("directory"), std::string::npos);
 }

@@ -243,7 +243,7 @@ TEST(LasReader, refuses_what_is_cut_off_or_lies_about_itself) {
   refused("point format 4 is not supported", [](Bytes& b) { put(b, 104, std::uint8_t{4}); });
   refused("too short for point format", [](Bytes& b) { put(b, 105, std::uint16_t{20}); });
   refused("room for 2", [](Bytes& b) { put(b, 107, std::uint32_t{4000000000u}); });
-  refused("room for 1", [](Bytes& b) { b.pop_back(); });
+  refused("room for 1; fetch or copy it again", [](Bytes& b) { b.pop_back(); });
   refused("outside the file", [](Bytes& b) { put(b, 96, std::uint32_t{3000000000u}); });
   refused("variable length records", [](Bytes& b) { put(b, 100, std::uint32_t{4000000000u}); });
   refused("scale or offset", [](Bytes& b) { put(b, 131, 0.0); });

@@ -137,8 +137,19 @@ class CityGmlPass {
   };
 
   FormatError failure() const {
-    const std::string cause = cause_.empty() ? XML_ErrorString(XML_GetErrorCode(parser_)) : cause_;
+    const std::string cause = cause_.empty() ? fault() : cause_;
     return FormatError(file_, "line " + std::to_string(XML_GetCurrentLineNumber(parser_)) + ": " + cause);
+  }
+  std::string fault() const {
+    const XML_Error code = XML_GetErrorCode(parser_);
+    const std::string words = XML_ErrorString(code);
+    switch (code) {
+      case XML_ERROR_NO_ELEMENTS:
+      case XML_ERROR_UNCLOSED_TOKEN:
+      case XML_ERROR_UNCLOSED_CDATA_SECTION:
+      case XML_ERROR_PARTIAL_CHAR: return "the file ends too early (" + words + "); fetch it again";
+      default: return words;
+    }
   }
   void stop(std::string cause) {
     if (cause_.empty()) cause_ = std::move(cause);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
@@ -17,6 +18,10 @@ using nlohmann::json;
 
 constexpr int max_depth = 64;
 constexpr std::size_t max_line = std::size_t{256} << 20;
+
+std::string fault(const json::parse_error& error, std::uintmax_t num_bytes) {
+  return "is no whole JSON: " + (error.byte > num_bytes ? "it ends too early; fetch the file again" : "byte " + std::to_string(error.byte) + " is out of place");
+}
 
 /// "2.2" and 2.2 as 22, "2" as 20; 0 for anything else.
 int lod_of(const json& geometry) {
@@ -288,7 +293,7 @@ void stream_json(const Document& document, const Member& member, const Object& o
   try {
     if (!json::parse(stream, callback).is_object()) document.fail("is no CityJSON object");
   } catch (const json::parse_error& error) {
-    document.fail("is no whole JSON: byte " + std::to_string(error.byte));
+    document.fail(fault(error, std::filesystem::file_size(document.file)));
   }
 }
 
@@ -317,7 +322,7 @@ json parse_line(const Document& document, const std::string& line, std::size_t n
     if (!parsed.is_object()) document.fail("line " + std::to_string(number) + ": no JSON object");
     return parsed;
   } catch (const json::parse_error& error) {
-    document.fail("line " + std::to_string(number) + ": is no whole JSON: byte " + std::to_string(error.byte));
+    document.fail("line " + std::to_string(number) + ": " + fault(error, line.size()));
   }
 }
 

@@ -84,7 +84,7 @@ Layout read_fixed_header(ByteSource& file) {
   header.version_minor = load<std::uint8_t>(&head[25]);
   const std::size_t needed = header.version_minor >= 4 ? header_size_1_4 : header.version_minor == 3 ? header_size_1_3 : header_size_1_2;
   const std::size_t header_size = load<std::uint16_t>(&head[94]);
-  if (head.size() < needed) file.fail("is cut off inside the LAS header");
+  if (head.size() < needed) file.fail("is cut off inside the LAS header; fetch or copy it again");
   if (header_size < needed)
     file.fail("LAS header of " + std::to_string(header_size) + " bytes is too short for version 1." + std::to_string(header.version_minor));
 
@@ -102,7 +102,7 @@ Layout read_fixed_header(ByteSource& file) {
   const std::uint64_t held = (file.size() - layout.points_position) / layout.record_length;
   if (header.num_points > held)
     file.fail("is cut off: the LAS header promises " + std::to_string(header.num_points) + " points, the file has room for " +
-              std::to_string(held));
+              std::to_string(held) + "; fetch or copy it again");
 
   header.scale = load_vector(&head[131]);
   header.offset = load_vector(&head[155]);

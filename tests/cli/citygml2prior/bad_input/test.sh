@@ -2,7 +2,9 @@ good="<CityModel><cityObjectMember><Building><lod1Solid><Polygon srsName='EPSG:2
 echo "$good" >good.gml
 fails_with 1 "missing.gml: no such file" citygml2prior missing.gml -o out
 head -c 100 good.gml >cut.gml
-fails_with 1 "cut.gml: line" citygml2prior cut.gml -o out
+fails_with 1 "cut.gml: line 1: the file ends too early (unclosed token); fetch it again" citygml2prior cut.gml -o out
+printf '<CityModel><cityObjectMember>' >cut.gml
+fails_with 1 "cut.gml: line 1: the file ends too early (no element found); fetch it again" citygml2prior cut.gml -o out
 echo '<html/>' >page.gml
 fails_with 1 "no CityGML" citygml2prior page.gml -o out
 echo '{"type":"FeatureCollection"}' >geo.json
@@ -17,7 +19,8 @@ echo '<CityModel/>' >empty.gml
 fails_with 1 "holds no building" citygml2prior empty.gml -o out
 fails_with 1 "undeclared" citygml2prior good.gml -o out --crs EPSG:25832+7837
 fails_with 1 "EPSG:4326" citygml2prior good.gml -o out --crs EPSG:4326
-fails_with 1 "--bbox" citygml2prior good.gml -o out --quiet --bbox 1,1,2,2
+fails_with 1 "good.gml: no building lies inside --bbox (W,S,E,N in EPSG:4326); the data reach over 9" citygml2prior good.gml -o out --quiet --bbox 1,1,2,2
+fails_with 1 "were the box's numbers given as S,W,N,E?" citygml2prior good.gml -o out --quiet --bbox 47,8,48,10
 fails_with 2 "--faces" citygml2prior good.gml -o out --faces some
 expect_absent out
 succeeds citygml2prior good.gml -o out --quiet
@@ -30,7 +33,9 @@ fails_with 1 "nested deeper than 256" limited citygml2prior deep.gml -o other
 head -c 200000 /dev/zero | tr '\0' '[' >deep.json
 fails_with 1 "nested deeper than 64" limited citygml2prior deep.json -o other
 head -c 100 "$PRIORMAP_SOURCE/tests/fuzz/cityjson/corpus/solid.json" >cut.json
-fails_with 1 "cut.json: is no whole JSON" limited citygml2prior cut.json -o other
+echo '{"type":"CityJSON",}' >odd.json
+fails_with 1 "odd.json: is no whole JSON: byte 20 is out of place" limited citygml2prior odd.json -o other
+fails_with 1 "cut.json: is no whole JSON: it ends too early; fetch the file again" limited citygml2prior cut.json -o other
 # Each level refers ten times to the next: a billion polygons, were they all brought in.
 {
   echo "<CityModel><boundedBy><Envelope srsName='EPSG:25832'/></boundedBy><cityObjectMember><Building id='b'><lod2MultiSurface><MultiSurface>"

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string>
 
 #include <priormap/builder/prior_options.hpp>
 #include <priormap/geodesy/crs.hpp>
@@ -31,5 +32,9 @@ class BboxFilter {
   std::optional<Bounds2> outer_;
   Bounds2 inner_;                                ///< everything inside of it is kept; empty: not known
 };
+
+/// Why --bbox kept nothing of data with the extent `data` in `data_crs`: where they lie in the box's CRS, and whether the box would meet them with its axes
+/// in the other order.
+std::string missed_by_bbox(const PriorOptions& options, const Bounds2& data, const Crs& data_crs);
 
 }  // namespace priormap
