@@ -68,6 +68,8 @@ class PriorComparison {
     return matches;
   }
 
+  double stated_building_sigma_m() const { return prior_.map().stated_sigma_m(PriorSurfels::of_features); }
+
  private:
   static JointOptions one_step(JointOptions options) {
     options.max_iterations = 1;
@@ -174,9 +176,11 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
   const auto compare = [&](auto&& take) {
     PriorComparison comparison(*prior, pieces, read_again, options);
     for (std::size_t k = 0; k < graph.size(); ++k) take(k, graph.pose(k), comparison.at(graph.record(k), graph.pose(k)));
+    return comparison.stated_building_sigma_m();
   };
   if (prior) {
-    compare([&](std::size_t, const Eigen::Isometry3d& T, const std::vector<PlaneMatch>& matches) { pieces.vote(T, matches); });
+    const double building_sigma_m = compare([&](std::size_t, const Eigen::Isometry3d& T, const std::vector<PlaneMatch>& matches) { pieces.vote(T, matches); });
+    sigmas[PieceKind::building] = std::max(how.building_sigma_m, building_sigma_m);
     pieces.take_likeliest_offsets();
   }
   for (int pass = 0; pass < (prior ? how.passes : 1); ++pass) {

@@ -124,8 +124,10 @@ std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, co
     covariance_ = T_odom_last_ ? predicted_covariance(T_odom_sensor) : covariance_of(Matrix6d::Zero());
   }
   T_odom_last_ = T_odom_sensor;
-  for (std::size_t i = 0; i < prior_weights_.size(); ++i)
-    prior_weights_[i] = 1 / (1 + translation_information(match.targets[i].information / targets[i].weight) * options_.prior_floor_m * options_.prior_floor_m / 3);
+  for (std::size_t i = 0; i < prior_weights_.size(); ++i) {
+    const double floor_m = std::max(options_.prior_floor_m, map.stated_sigma_m(i));
+    prior_weights_[i] = 1 / (1 + translation_information(match.targets[i].information / targets[i].weight) * floor_m * floor_m / 3);
+  }
   return found;
 }
 

@@ -111,7 +111,7 @@ struct EstimateOptions {
     visit("motion-scale", motion_scale, {"how much less sure the relative poses are than their matching says", "", 0.01, 100});
     visit("piece-range", range_m, {"the prior is compared up to this far from the sensor", "m", 1, 1000});
     visit("piece", piece_m, {"edge of the cells in which the errors of the prior are taken to be one", "m", 1, 1000});
-    visit("building-sigma", building_sigma_m, {"standard deviation of the offsets of the prior's buildings to begin with; it is estimated", "m", 1e-3, 100});
+    visit("building-sigma", building_sigma_m, {"standard deviation of the offsets of the prior's buildings to begin with, unless the prior states more; it is estimated", "m", 1e-3, 100});
     visit("wall-sigma", wall_sigma_m, {"the same of walls that belong to no building known", "m", 1e-3, 100});
     visit("slope-sigma", slope_sigma_m, {"the same of slopes, such as the edges of a surface model", "m", 1e-3, 100});
     visit("ground-sigma", ground_sigma_m, {"the same of level ground", "m", 1e-3, 100});

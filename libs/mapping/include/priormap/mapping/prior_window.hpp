@@ -71,6 +71,7 @@ class PriorWindow {
     look_ahead(p_map);
     return map_;
   }
+  const Map& map() const { return map_; }   ///< as it is, without loading
   std::size_t tiles_held() const { return tiles_.count(); }
   /// What is there: it comes of the whole way so far.
   void exchange(StateArchive& archive) { archive(tiles_, map_); }
