@@ -194,7 +194,7 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
     marginals = graph.estimate(pieces, sigmas, weights);
     if (pass + 1 < how.passes) sigmas = pieces.estimated_sigmas(stated, sigmas, marginals.pieces, weights);
   }
-  graph.add_common(pieces.common_variance(sigmas, how.common_share, how.ground_common_share), marginals.poses);
+  graph.add_common(pieces.common_variance(sigmas, {how.common_share, how.wall_common_share, how.ground_common_share}), marginals.poses);
   const std::vector<bool> contradicted = pieces.contradicted(graph.size());
   if (std::ranges::all_of(contradicted, std::identity()))   // nowhere is the drive known to be
     for (Matrix6d& covariance : marginals.poses) covariance += unknown_gap_covariance();

@@ -166,11 +166,11 @@ std::vector<bool> PiecesOfPrior::contradicted(std::size_t num_poses) const {
   return result;
 }
 
-CommonVariance PiecesOfPrior::common_variance(const PieceSigmas& sigmas, double level_share, double ground_share) const {
+CommonVariance PiecesOfPrior::common_variance(const PieceSigmas& sigmas, const PieceShares& shares) const {
   const auto has = [&](PieceKind kind) { return std::ranges::any_of(pieces_, [&](const Piece& piece) { return piece.kind == kind; }); };
   const auto of = [&](PieceKind kind, double share) { return has(kind) ? share * sigmas[kind] * sigmas[kind] : 0; };
-  const double level = of(has(PieceKind::building) ? PieceKind::building : PieceKind::wall, level_share);
-  return {{level, level, of(PieceKind::ground, ground_share)}, level / (4 * range_m_ * range_m_)};
+  const double level = has(PieceKind::building) ? of(PieceKind::building, shares.building) : of(PieceKind::wall, shares.wall);
+  return {{level, level, of(PieceKind::ground, shares.ground)}, level / (4 * range_m_ * range_m_)};
 }
 
 }  // namespace priormap

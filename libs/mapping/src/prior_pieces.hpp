@@ -43,6 +43,11 @@ struct PieceNoise {
 /// Normal equations of one comparison. @param offset_m  of the piece, as far as it is known: what strays from there is an outlier
 PieceEquations equations_of(const PlaneMatch& match, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, double surface_sigma_m, double kernel_width);
 
+/// Shares of the variance of their offsets that all pieces of a kind have in common.
+struct PieceShares {
+  double building, wall, ground;
+};
+
 /// What all poses have in common, in map axes.
 struct CommonVariance {
   Eigen::Vector3d position_m2;
@@ -71,7 +76,7 @@ class PiecesOfPrior {
                                const std::vector<double>& weights) const;
   /// How sure the prior is as a whole: the errors of its pieces have a share of their variance in common, which no number of pieces averages out. Zero without pieces.
   /// @param sigmas  of the kinds of pieces
-  CommonVariance common_variance(const PieceSigmas& sigmas, double level_share, double ground_share) const;
+  CommonVariance common_variance(const PieceSigmas& sigmas, const PieceShares& shares) const;
   /// Around which poses the prior's walls are not where the scans see walls: the poses are wrong, or the prior is of another place. What knows few walls contradicts nothing.
   std::vector<bool> contradicted(std::size_t num_poses) const;
   std::size_t size() const { return pieces_.size(); }

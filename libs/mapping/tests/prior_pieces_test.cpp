@@ -117,6 +117,19 @@ TEST(PriorPieces, WallsThatAreNotWhereScansSeeWallsContradict) {
   EXPECT_TRUE(contradicted(false));
 }
 
+TEST(PriorPieces, WhatAllPiecesOfAKindHaveInCommonNoNumberOfThemAveragesOut) {
+  const PieceSigmas sigmas = {{0.4, 0.3, 0.3, 0.1}};
+  const PieceShares shares = {0.25, 0.16, 0.01};
+  PiecesOfPrior none(20, 70), raster(20, 70), both(20, 70);
+  EXPECT_TRUE(none.common_variance(sigmas, shares).position_m2.isZero());
+  const PlaneMatch wall{{10, 8, 2}, {1, 0, 0}, 0.0, 1e-4}, ground = ground_match(10, 0, 0), building{{10, 8, 2}, {1, 0, 0}, 0.0, 1e-4, 7};
+  raster.add(0, pose(0, 0, 0), {wall, ground}, noise);
+  EXPECT_TRUE(raster.common_variance(sigmas, shares).position_m2.isApprox(Eigen::Vector3d(0.0144, 0.0144, 1e-4)));
+  both.add(0, pose(0, 0, 0), {wall, building}, noise);
+  EXPECT_TRUE(both.common_variance(sigmas, shares).position_m2.isApprox(Eigen::Vector3d(0.04, 0.04, 0)));
+  EXPECT_NEAR(both.common_variance(sigmas, shares).yaw_rad2, 0.04 / (140 * 140), 1e-12);
+}
+
 TEST(PriorPieces, WhatKnowsFewWallsContradictsNothing) {
   PiecesOfPrior pieces(20, 70);
   pieces.take_likeliest_offsets();
