@@ -74,7 +74,7 @@ OdometryStep Odometry::matched_in_motion(SurfelCloud& scan, double duration_s) {
   const SurfelCloud raw = scan;
   undo_motion(scan, velocity_);
   const OdometryStep found = matched(scan, better_guess(scan, duration_s));
-  if (!found.joined) return found;
+  if (!found.joined || num_lost_ > 0) return found;   // after a loss the way since the last match tells no steady motion
   const Vector6d velocity = steady_velocity(T_odom_last_, found.T_odom_sensor, duration_s), change = velocity - velocity_;
   if (longest_s * (change.tail<3>().norm() + range_m * change.head<3>().norm()) < least_m) return found;
   scan = raw;

@@ -80,16 +80,14 @@ bool PriorTracker::asks(const Eigen::Isometry3d& T_odom_sensor) const {
   return prior_ && !(T_odom_last_ && (T_odom_sensor.translation() - T_odom_last_->translation()).norm() < options_.keyframe_m);
 }
 
-PriorMatch PriorTracker::word_of(const JointResult& match, std::span<const JointTarget> targets, std::size_t num_surfels) const {
+PriorMatch PriorTracker::word_of(const JointResult& match, std::size_t num_surfels) const {
   PriorMatch found;
   MatchFigures& figures = found.figures;
   double squares = 0;
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    const TargetResult& layer = match.targets[i];
+  for (const TargetResult& layer : match.targets) {
     figures.num_correspondences += layer.num_correspondences;
     figures.num_inliers += layer.num_inliers;
     squares += static_cast<double>(layer.num_inliers) * layer.inlier_rmse_m * layer.inlier_rmse_m;
-    found.information += layer.information / targets[i].weight;
   }
   figures.inlier_rmse_m = figures.num_inliers ? std::sqrt(squares / static_cast<double>(figures.num_inliers)) : 0;
   figures.iterations = match.iterations;
@@ -115,7 +113,7 @@ std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, co
   } else {
     match = registration_.align(scan, targets, T_pred, PosePrior{guess, start_information(guess)});
   }
-  const PriorMatch found = word_of(match, targets, scan.size());
+  const PriorMatch found = word_of(match, scan.size());
   const bool accepted = found.figures.accepted;
   if (accepted) {
     covariance_ = covariance_of(match.information);

@@ -1,7 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <priormap/mapping/mapped_scan.hpp>
@@ -16,8 +15,7 @@ namespace priormap {
 /// What the prior says of a scan.
 struct PriorMatch {
   MatchFigures figures;
-  double share = 0;                          ///< of the scan's surfels that the prior knows
-  Matrix6d information = Matrix6d::Zero();   ///< tangent in sensor axes
+  double share = 0;   ///< of the scan's surfels that the prior knows
 };
 
 /// How `odom` lies in `map`, followed along the drive: each few metres a scan is matched to the prior and to where the odometry says it was, in one system
@@ -43,7 +41,7 @@ class PriorTracker {
   };
   void compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
 
-  PriorMatch word_of(const JointResult& match, std::span<const JointTarget> targets, std::size_t num_surfels) const;
+  PriorMatch word_of(const JointResult& match, std::size_t num_surfels) const;
   Matrix6d predicted_covariance(const Eigen::Isometry3d& T_odom_sensor) const;
 
   TrackingOptions options_;
