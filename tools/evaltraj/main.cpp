@@ -10,6 +10,7 @@
 #include <priormap/evaluation/evaluate.hpp>
 #include <priormap/evaluation/height_reference.hpp>
 #include <priormap/evaluation/trajectory_file.hpp>
+#include <priormap/geodesy/option_crs.hpp>
 
 namespace {
 
@@ -60,6 +61,7 @@ int main(int argc, char** argv) {
   app.options(options);
   return app.run(argc, argv, [&](const cli::ToolContext& context) {
     options.align = alignment(arguments.align);
+    if (arguments.crs) option_crs("--crs", *arguments.crs);   // refuses what is none
     Trajectory reference = read_reference(arguments), estimate = read_estimate(arguments);
     settle_heights({arguments.reference, reference}, {arguments.estimate, estimate}, arguments.assume_vertical, context.events);
     const auto evaluation = evaluate_trajectory(std::move(reference), std::move(estimate), options, context.events);

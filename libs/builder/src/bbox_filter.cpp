@@ -4,19 +4,13 @@
 #include <sstream>
 #include <vector>
 
-#include <priormap/core/error.hpp>
 #include <priormap/geodesy/image_bounds.hpp>
+#include <priormap/geodesy/option_crs.hpp>
 
 namespace priormap {
 namespace {
 
-Crs bbox_crs(const PriorOptions& options) {
-  try {
-    return Crs::parse(options.bbox_crs).horizontal();
-  } catch (const CrsError& error) {
-    throw CrsError(std::string("--bbox-crs: ") + error.what());
-  }
-}
+Crs bbox_crs(const PriorOptions& options) { return horizontal_option_crs("--bbox-crs", options.bbox_crs); }
 
 bool overlap(const Bounds2& a, const Bounds2& b) { return a.min_x <= b.max_x && b.min_x <= a.max_x && a.min_y <= b.max_y && b.min_y <= a.max_y; }
 

@@ -7,26 +7,18 @@
 #include <utility>
 
 #include <priormap/core/error.hpp>
+#include <priormap/geodesy/option_crs.hpp>
 #include <priormap/geodesy/transformer.hpp>
 
 namespace priormap {
 namespace {
 
-/// A CRS from an option, with the option's name in the message.
-Crs parse_option(const std::string& option, const std::string& text) {
-  try {
-    return Crs::parse(text);
-  } catch (const CrsError& error) {
-    throw CrsError(option + ": " + error.what());
-  }
-}
-
 void check_projected_in_metres(const Crs& crs) {
   if (!crs.is_projected())
-    throw CrsError("--crs " + crs.name() + " is not projected; a prior needs a projected CRS in metres, such as a UTM zone (EPSG:25832)");
+    throw UsageError("--crs " + crs.name() + " is not projected; a prior needs a projected CRS in metres, such as a UTM zone (EPSG:25832)");
   if (crs.horizontal_unit_m() != 1 || crs.vertical_unit_m() != 1)
-    throw CrsError("--crs " + crs.name() + " is not in metres; a prior needs a projected CRS in metres, such as a UTM zone (EPSG:25832)");
-  if (crs.heights_point_down()) throw CrsError("--crs " + crs.name() + " counts depths; a prior needs heights");
+    throw UsageError("--crs " + crs.name() + " is not in metres; a prior needs a projected CRS in metres, such as a UTM zone (EPSG:25832)");
+  if (crs.heights_point_down()) throw UsageError("--crs " + crs.name() + " counts depths; a prior needs heights");
 }
 
 bool is_utm_zone(const Crs& crs) { return crs.is_projected() && crs.human_name().find("UTM zone") != std::string::npos; }
@@ -77,7 +69,7 @@ double degrees_outside(const Crs& crs, const GeoPoint& place) {
 GeoPoint best_place(const Crs& crs, const PriorOptions& options, const GeoPoint& middle) {
   if (options.bbox.empty()) return middle;
   const std::vector<double>& b = options.bbox;
-  const Transformer to_lon_lat(parse_option("--bbox-crs", options.bbox_crs).horizontal(), Crs::parse("EPSG:4326"));
+  const Transformer to_lon_lat(horizontal_option_crs("--bbox-crs", options.bbox_crs), Crs::parse("EPSG:4326"));
   const Eigen::Vector3d p = to_lon_lat.forward({0.5 * (b[0] + b[2]), 0.5 * (b[1] + b[3]), 0});
   if (!p.allFinite()) return middle;
   const GeoPoint middle_of_box{p.y(), p.x(), 0};
@@ -147,20 +139,19 @@ bool contradicts(const Crs& named, const Crs& declared) {
 InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>& declared, const std::string& file, const Events& events) {
   std::optional<Crs> crs = declared;
   if (!options.source_crs.empty()) {
-    crs = parse_option("--source-crs", options.source_crs);
+    crs = option_crs("--source-crs", options.source_crs);
     if (declared && contradicts(*crs, *declared))
       events.warn(file + ": says that it is in " + declared->name() + "; read as " + crs->name() + " by --source-crs");
   }
   if (!crs) throw CrsError(file + ": has no coordinate reference system; name it with --source-crs, such as EPSG:25832+7837");
   if (crs->is_vertical()) throw CrsError(file + ": " + crs->name() + " has heights only; a horizontal CRS is needed too, such as EPSG:25832+7837");
   if (options.assume_vertical.empty() || crs->has_vertical()) return {*crs, "", file};
-  const Crs assumed = parse_option("--assume-vertical", options.assume_vertical);
-  if (!assumed.is_vertical()) throw CrsError("--assume-vertical " + options.assume_vertical + " is no vertical CRS, such as EPSG:5773");
+  const Crs assumed = vertical_option_crs("--assume-vertical", options.assume_vertical);
   return {crs->with_vertical(assumed), assumed.name(), file};
 }
 
 Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const std::optional<GeoPoint>& middle, const Events& events) {
-  const Crs asked = options.crs.empty() ? default_horizontal(inputs, middle.value_or(GeoPoint{})) : parse_option("--crs", options.crs);
+  const Crs asked = options.crs.empty() ? default_horizontal(inputs, middle.value_or(GeoPoint{})) : option_crs("--crs", options.crs);
   check_projected_in_metres(asked);
   if (!options.crs.empty() && middle) check_fits(asked, best_place(asked, options, *middle), events);
   if (asked.has_vertical()) {

@@ -17,6 +17,7 @@
 #include <priormap/core/hash.hpp>
 #include <priormap/core/parallel.hpp>
 #include <priormap/geodesy/image_bounds.hpp>
+#include <priormap/geodesy/option_crs.hpp>
 #include <priormap/prior/prior_writer.hpp>
 #include <priormap/sources/height_raster.hpp>
 #include <priormap/sources/raster_points.hpp>
@@ -81,7 +82,7 @@ GeoPoint middle_of(const std::vector<RasterInput>& inputs, const PriorOptions& o
     all = {std::min(all.min_x, bounds.min_x), std::min(all.min_y, bounds.min_y), std::max(all.max_x, bounds.max_x), std::max(all.max_y, bounds.max_y)};
   }
   if (all.max_x - all.min_x > zone_width_deg && !options.bbox.empty()) {
-    const Transformer to_lon_lat(Crs::parse(options.bbox_crs).horizontal(), lon_lat);
+    const Transformer to_lon_lat(horizontal_option_crs("--bbox-crs", options.bbox_crs), lon_lat);
     const Eigen::Vector3d p = to_lon_lat.forward({0.5 * (options.bbox[0] + options.bbox[2]), 0.5 * (options.bbox[1] + options.bbox[3]), 0});
     return {p.y(), p.x(), 0};
   }

@@ -7,8 +7,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <iostream>
-#include <iterator>
+#include <map>
 #include <new>
 #include <string_view>
 #include <thread>
@@ -17,7 +18,9 @@
 #include <priormap/core/parallel.hpp>
 #include <priormap/core/version.hpp>
 
+#include "config_file.hpp"
 #include "console.hpp"
+#include "nearest_name.hpp"
 #include "option_value.hpp"
 #include "toml.hpp"
 
@@ -28,23 +31,6 @@ constexpr int exit_failed = 1;
 constexpr int exit_usage = 2;
 
 using Texts = std::vector<std::string>;
-
-/// Lets CLI11 read configurations by our TOML parser; its own cuts strings at '#' and knows no escapes.
-class TomlConfig : public CLI::Config {
- public:
-  std::string to_config(const CLI::App*, bool, bool, std::string) const override { return {}; }
-
-  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-    const std::string text{std::istreambuf_iterator<char>(input), {}};
-    std::vector<CLI::ConfigItem> result;
-    for (const TomlEntry& entry : parse_toml(text)) {
-      result.emplace_back();
-      result.back().name = entry.key;
-      result.back().inputs = entry.values;
-    }
-    return result;
-  }
-};
 
 /// A signal must not leave temporary outputs behind. Handlers may not touch files, so one thread waits for the signals
 /// that all others block.
@@ -86,6 +72,12 @@ std::vector<std::string> number_literals(const std::vector<double>& values) {
   return literals;
 }
 
+/// A word of the command line that asks for an option: a number below zero does not.
+bool asks_for_option(const std::string& word) {
+  const auto letter = word.find_first_not_of('-');
+  return letter != 0 && letter != std::string::npos && std::isalpha(static_cast<unsigned char>(word[letter]));
+}
+
 std::vector<std::string> string_literals(const std::vector<std::string>& values) {
   std::vector<std::string> literals;
   for (const std::string& value : values) literals.push_back(toml_string(value));
@@ -106,11 +98,11 @@ struct ToolApp::Impl {
   CLI::Option* add(const std::string& flags, const std::function<void(const Texts&)>& read, const std::string& help,
                    const std::string& type, const std::string& default_text,
                    std::function<std::optional<std::string>()> literal) {
-    const auto callback = [read, flags](const Texts& texts) {
+    const auto callback = [this, read, shown = first_name(flags)](const Texts& texts) {
       try {
         read(texts);
       } catch (const UsageError& error) {
-        throw CLI::ValidationError(shown_name(flags), error.what());
+        throw CLI::ValidationError(place_in_config(shown) + shown, error.what());
       }
       return true;
     };
@@ -131,9 +123,28 @@ struct ToolApp::Impl {
     dumped.push_back({option->get_single_name(), std::move(literal)});
   }
 
-  static std::string shown_name(const std::string& flags) {
+  static std::string first_name(const std::string& flags) {
     const auto start = flags.find("--");
     return start == std::string::npos ? flags : flags.substr(start, flags.find(',', start) - start);
+  }
+
+  std::string config_name() const { return app.get_config_ptr()->as<std::string>(); }
+
+  /// "FILE: line N: " where the value comes from there.
+  std::string place_in_config(const std::string& shown) const {
+    const auto line = config_lines.find(shown);
+    return line == config_lines.end() ? "" : config_name() + ": line " + std::to_string(line->second) + ": ";
+  }
+
+  /// A slip of the keyboard is named before what is missing because of it.
+  void refuse_unknown_options(int argc, char** argv) const {
+    const std::vector<std::string> left = app.remaining();
+    for (int i = 1; i < argc; ++i) {
+      const std::string word = argv[i];
+      if (!asks_for_option(word) || std::find(left.begin(), left.end(), word) == left.end()) continue;
+      const std::string asked = word.substr(0, word.find('=')), bare = asked.substr(asked.find_first_not_of('-'));
+      throw CLI::ParseError("there is no option " + asked + meant(bare, long_names(app), "--"), CLI::ExitCodes::ExtrasError);
+    }
   }
 
   void parse(int argc, char** argv) {
@@ -141,7 +152,11 @@ struct ToolApp::Impl {
     for (CLI::Option* list : number_lists) list->allow_extra_args(!has_positionals);   // 1 2 3 for 1,2,3 where nothing else could be meant
     try {
       app.parse(argc, argv);
+    } catch (const CLI::ExtrasError&) {
+      refuse_unknown_options(argc, argv);
+      throw;
     } catch (const CLI::RequiredError&) {
+      refuse_unknown_options(argc, argv);
       if (!dump) throw;
       for (CLI::Option* option : app.get_options()) option->required(false);
       app.parse(argc, argv);
@@ -160,6 +175,7 @@ struct ToolApp::Impl {
   std::string group = "Options";
   std::vector<Dumped> dumped;
   std::vector<CLI::Option*> number_lists;
+  std::map<std::string, int> config_lines;
   int threads = 0;
   bool overwrite = false, quiet = false, log_json = false, dump = false;
 };
@@ -229,7 +245,7 @@ void ToolApp::option(const std::string& flags, std::uint64_t& value, const Optio
 }
 
 void ToolApp::option(const std::string& flags, bool& value, const OptionField& field) {
-  const std::string remark = value ? " (on; " + Impl::shown_name(flags) + "=false turns it off)" : "";
+  const std::string remark = value ? " (on; " + Impl::first_name(flags) + "=false turns it off)" : "";
   impl_->add_flag(flags, value, std::string(field.help) + remark);
 }
 
@@ -290,7 +306,7 @@ int ToolApp::run(int argc, char** argv, const std::function<void(const ToolConte
   impl.add_flag("--quiet", impl.quiet, "Only errors on stderr");
   impl.add_flag("--log-json", impl.log_json, "Messages and progress as one JSON object a line");
   app.set_config("--config", "", "Options from a TOML file; the command line wins")->group(impl.group)->type_name("FILE");
-  app.config_formatter(std::make_shared<TomlConfig>());
+  app.config_formatter(std::make_shared<ConfigFile>(app, impl.config_lines));
   app.allow_config_extras(CLI::config_extras_mode::error);
   app.add_flag("--dump-config", impl.dump, "Print the options in force as a configuration file, and end")
       ->group(impl.group)
@@ -312,7 +328,7 @@ int ToolApp::run(int argc, char** argv, const std::function<void(const ToolConte
   } catch (const CLI::ParseError& error) {
     return fail(std::string(error.what()) + " (see " + impl.name + " --help)", exit_usage);
   } catch (const UsageError& error) {
-    return fail(app.get_config_ptr()->as<std::string>() + ": " + error.what(), exit_usage);
+    return fail(impl.config_name() + ": " + error.what() + " (see " + impl.name + " --help)", exit_usage);
   }
   if (impl.dump) {
     std::cout << impl.config_text();

@@ -192,13 +192,45 @@ TEST(ToolAppTest, DumpedConfigGivesTheSameRun) {
   EXPECT_EQ(run.options.crs, "EPSG:25832#\\");
 }
 
-TEST(ToolAppTest, FaultyConfigIsWrongUsage) {
-  for (const char* text : {"nonsense = 1\n", "count = 99\n", "count = [1\n", "count = [1, 2]\n", "[section]\ncount = 1\n"}) {
+TEST(ToolAppTest, AMisspeltOptionIsNamedWithTheOneThatIsNear) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
+      {{"--otuput", "out", "a"}, "there is no option --otuput; did you mean --output?"},   // not that --output is missing
+      {{"a", "-o", "out", "--default-hight=3"}, "there is no option --default-hight; did you mean --default-height?"},
+      {{"a", "-o", "out", "--ground", "3"}, "there is no option --ground; did you mean --ground-height?"},
+      {{"a", "-o", "out", "-seed", "3"}, "there is no option -seed; did you mean --seed?"},
+      {{"a", "-o", "out", "--first", "--second"}, "there is no option --first (see"},
+      {{"--dump-config", "--thread", "3"}, "there is no option --thread; did you mean --threads?"},
+  };
+  for (const auto& [arguments, text] : wrong) {
+    const Demo demo(arguments);
+    EXPECT_EQ(demo.exit_code, 2);
+    EXPECT_NE(demo.err.find(text), std::string::npos) << demo.err;
+  }
+}
+
+TEST(ToolAppTest, FaultyConfigIsWrongUsageThatNamesFileAndLine) {
+  const std::vector<std::pair<std::string, std::string>> wrong = {
+      {"count = 1\nnonsense = 1\n", ": line 2: nonsense is no option that a configuration sets (see demo"},
+      {"cuont = 1\n", ": line 1: cuont is no option that a configuration sets; did you mean count?"},
+      {"# few\ncount = 99\n", ": line 2: --count: 99 is outside 1 to 9"},
+      {"INPUT = \"a\"\nkind = \"both\"\n", ": line 2: --kind: 'both' is none of"},
+      {"count = [1\n", ": line 2: expected , or ] in the array"},
+      {"count = [1, 2]\n", ": line 1: count takes one value"},
+      {"bbox = []\n", ": line 1: bbox has no value"},
+      {"quiet = 3\n", ": line 1: quiet is true or false, not '3'"},
+      {"help = true\n", ": line 1: help is no option that a configuration sets"},
+      {"[section]\ncount = 1\n", ": line 1: sections are not used here"},
+  };
+  for (const auto& [text, cause] : wrong) {
     const ConfigFile config(text);
     const Demo demo({"a", "-o", "out", "--config", config.path()});
     EXPECT_EQ(demo.exit_code, 2) << text;
     EXPECT_EQ(std::count(demo.err.begin(), demo.err.end(), '\n'), 1) << demo.err;
+    EXPECT_TRUE(demo.err.starts_with("demo: " + config.path() + cause)) << demo.err;
   }
+  const ConfigFile config("count = 99\n");
+  EXPECT_EQ(Demo({"a", "-o", "out", "--count", "3", "--config", config.path()}).exit_code, 0) << "the command line wins";
+  EXPECT_NE(Demo({"a", "-o", "out", "--count", "0", "--config", config.path()}).err.find("demo: --count: 0 is outside"), std::string::npos);
 }
 
 TEST(ToolAppTest, ExceptionsBecomeExitCodes) {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include <priormap/core/error.hpp>
-#include <priormap/geodesy/crs.hpp>
+#include <priormap/geodesy/option_crs.hpp>
 
 namespace priormap {
 namespace {
@@ -27,8 +27,7 @@ std::string remedy(const Crs& declared) {
 
 void settle_heights(const TrajectoryOfFile& reference, const TrajectoryOfFile& estimate, const std::string& assume_vertical, const Events& events) {
   if (!assume_vertical.empty()) {
-    const Crs vertical = Crs::parse(assume_vertical);
-    if (!vertical.is_vertical()) throw CrsError("--assume-vertical " + assume_vertical + " is no vertical CRS; give one such as EPSG:7837");
+    const Crs vertical = vertical_option_crs("--assume-vertical", assume_vertical);
     const bool of_reference = assume(reference.trajectory, vertical), of_estimate = assume(estimate.trajectory, vertical);
     if (!of_reference && !of_estimate) events.warn("--assume-vertical has no effect: neither trajectory is in a CRS that leaves its heights undeclared");
   }

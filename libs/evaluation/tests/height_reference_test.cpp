@@ -20,7 +20,7 @@ Settled settle(const std::string& reference_crs, const std::string& estimate_crs
   events.warning = [&](const std::string& message) { settled.warning += message; };
   try {
     settle_heights({"truth.csv", reference}, {"out.csv", estimate}, assume_vertical, events);
-  } catch (const CrsError& error) {
+  } catch (const Error& error) {
     settled.error = error.what();
   }
   settled.reference = reference.crs;

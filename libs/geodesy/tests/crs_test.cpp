@@ -1,4 +1,5 @@
 #include <priormap/geodesy/crs.hpp>
+#include <priormap/geodesy/option_crs.hpp>
 
 #include <gtest/gtest.h>
 
@@ -10,6 +11,10 @@
 using priormap::AreaOfUse;
 using priormap::Crs;
 using priormap::CrsError;
+using priormap::horizontal_option_crs;
+using priormap::option_crs;
+using priormap::UsageError;
+using priormap::vertical_option_crs;
 
 namespace {
 
@@ -190,6 +195,22 @@ TEST(CrsTest, LengthsAreDistortedAsTheProjectionSays) {
   EXPECT_NEAR(utm.length_distortion({60, 29, 0}), 0.9996 / std::sqrt(1 - across * across) - 1, 2e-4);
   EXPECT_NEAR(Crs::parse("EPSG:3857").length_distortion({60, 10, 0}), 1, 0.01) << "Web Mercator doubles lengths at 60 degrees";
   EXPECT_EQ(utm.length_distortion({0, 120, 0}), std::numeric_limits<double>::infinity()) << "more than a quarter round the globe";
+}
+
+TEST(CrsTest, WhatAnOptionNamesWronglyIsWrongUsage) {
+  EXPECT_EQ(horizontal_option_crs("--bbox-crs", "EPSG:25832+7837").name(), "EPSG:25832");
+  EXPECT_EQ(vertical_option_crs("--assume-vertical", "EPSG:7837").name(), "EPSG:7837");
+  const auto cause = [](auto&& named) -> std::string {
+    try {
+      named();
+      return "";
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_TRUE(cause([] { option_crs("--crs", "nonsense"); }).starts_with("--crs: "));
+  EXPECT_TRUE(cause([] { horizontal_option_crs("--bbox-crs", "EPSG:7837"); }).starts_with("--bbox-crs EPSG:7837 has heights only"));
+  EXPECT_TRUE(cause([] { vertical_option_crs("--assume-vertical", "EPSG:25832"); }).starts_with("--assume-vertical EPSG:25832 is no vertical CRS"));
 }
 
 }  // namespace

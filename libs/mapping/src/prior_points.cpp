@@ -7,6 +7,7 @@
 
 #include <priormap/core/error.hpp>
 #include <priormap/core/hash.hpp>
+#include <priormap/geodesy/option_crs.hpp>
 #include <priormap/pointcloud/point_formats.hpp>
 
 namespace priormap {
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 /// The vertical part that `declared` gets on the user's word.
 /// @throws UsageError when its heights are declared already, as something else
 Crs assume_vertical(const Crs& declared, const std::string& vertical, const fs::path& file) {
-  const Crs assumed = Crs::parse(vertical);
+  const Crs assumed = vertical_option_crs("--assume-vertical", vertical);
   if (!declared.has_vertical()) return declared.with_vertical(assumed);
   if (const auto own = declared.vertical(); own && own->equivalent_to(assumed)) return declared;
   throw UsageError(file.string() + ": its heights are declared as " + declared.human_name() + "; --assume-vertical " + vertical + " contradicts that, leave it out");
@@ -27,8 +28,9 @@ Crs assume_vertical(const Crs& declared, const std::string& vertical, const fs::
 std::optional<Crs> resolve_crs(const std::optional<Crs>& declared, const PriorOptions& options, const fs::path& file) {
   std::optional<Crs> crs = declared;
   if (!options.crs.empty()) {
-    const Crs named = Crs::parse(options.crs);
+    const Crs named = option_crs("--prior-crs", options.crs);
     if (!declared) {
+      if (!named.is_projected()) throw UsageError("--prior-crs " + named.name() + " is not projected; a prior needs a CRS in metres, such as a UTM zone (EPSG:25832)");
       crs = named;
     } else if (!declared->horizontal().equivalent_to(named.horizontal())) {
       throw CrsError(file.string() + ": is in " + declared->name() + ", not in --prior-crs " + named.name() + "; leave --prior-crs out");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <priormap/core/error.hpp>
+#include <priormap/geodesy/option_crs.hpp>
 
 namespace priormap {
 
@@ -19,7 +20,7 @@ BoxFilter::BoxFilter(const std::string& prior_crs, const std::vector<double>& bb
     cover_ = box_;
     return;
   }
-  to_box_.emplace(Crs::parse(prior_crs).horizontal(), Crs::parse(bbox_crs).horizontal());
+  to_box_.emplace(Crs::parse(prior_crs).horizontal(), horizontal_option_crs("--bbox-crs", bbox_crs));
   cover_ = outline_cover();
 }
 

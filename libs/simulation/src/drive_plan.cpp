@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include <priormap/core/error.hpp>
+#include <priormap/geodesy/option_crs.hpp>
 #include <priormap/geodesy/transformer.hpp>
 #include <priormap/simulation/street_graph.hpp>
 #include <priormap/sources/height_raster.hpp>
@@ -21,10 +22,10 @@ constexpr std::size_t default_scans = 300;
 constexpr double town_margin_m = 90;   // beyond streets and track: nearly as far as the sensor sees
 
 Crs projected_crs(const RouteOptions& route) {
-  Crs crs = Crs::parse(route.crs);
-  if (!crs.is_projected()) throw CrsError("--crs " + route.crs + " is not projected; name one such as EPSG:25832+7837");
+  Crs crs = option_crs("--crs", route.crs);
+  if (!crs.is_projected()) throw UsageError("--crs " + route.crs + " is not projected; name one such as EPSG:25832+7837");
   if (crs.horizontal_unit_m() != 1 || crs.vertical_unit_m() != 1)
-    throw CrsError("--crs " + route.crs + " does not count in metres; name one that does, such as EPSG:25832+7837");
+    throw UsageError("--crs " + route.crs + " does not count in metres; name one that does, such as EPSG:25832+7837");
   return crs;
 }
 

@@ -18,11 +18,17 @@ bool may_hold_polygons(OGRLayer& layer) {
   return type == wkbUnknown || type == wkbGeometryCollection || OGR_GT_IsSubClassOf(type, wkbSurface) || OGR_GT_IsSubClassOf(type, wkbMultiSurface);
 }
 
+std::string layer_names(GDALDataset& dataset) {
+  std::string names;
+  for (int i = 0; i < dataset.GetLayerCount(); ++i) names += (i ? ", " : "") + std::string(dataset.GetLayer(i)->GetName());
+  return names;
+}
+
 std::vector<OGRLayer*> chosen_layers(GDALDataset& dataset, const fs::path& file, const std::string& name) {
   std::vector<OGRLayer*> layers;
   if (!name.empty()) {
     OGRLayer* layer = dataset.GetLayerByName(name.c_str());
-    if (!layer) throw FormatError(file, "has no layer '" + name + "'");
+    if (!layer) throw UsageError(file.string() + ": has no layer '" + name + "'; it has: " + layer_names(dataset));
     layers.push_back(layer);
   } else {
     for (int i = 0; i < dataset.GetLayerCount(); ++i)
@@ -40,7 +46,7 @@ int field_index(OGRLayer& layer, const std::string& name, const fs::path& file) 
   if (index >= 0) return index;
   std::string known;
   for (int i = 0; i < definition.GetFieldCount(); ++i) known += (i ? ", " : "") + std::string(definition.GetFieldDefn(i)->GetNameRef());
-  throw FormatError(file, "layer '" + std::string(layer.GetName()) + "' has no field '" + name + "'; it has: " + known);
+  throw UsageError(file.string() + ": layer '" + std::string(layer.GetName()) + "' has no field '" + name + "'; it has: " + known);
 }
 
 void add_ring(const OGRLinearRing* ring, bool swap_axes, std::vector<Ring2>& rings) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <priormap/core/error.hpp>
+#include <priormap/geodesy/option_crs.hpp>
 
 namespace priormap {
 namespace {
@@ -32,12 +33,6 @@ void refuse_mixed_heights(std::span<const PriorStore> priors, const std::vector<
                      "; --assume-vertical CRS says in which the result is and takes undeclared heights as such");
 }
 
-Crs vertical_named(const std::string& text) {
-  const Crs crs = Crs::parse(text);
-  if (!crs.is_vertical()) throw CrsError("--assume-vertical " + text + " is no vertical CRS; give one such as EPSG:7837");
-  return crs;
-}
-
 }  // namespace
 
 CommonCrs common_crs(std::span<const PriorStore> priors, const std::string& assume_vertical, const Events& events) {
@@ -59,7 +54,7 @@ CommonCrs common_crs(std::span<const PriorStore> priors, const std::string& assu
   } else if (all_agree && verticals[0]) {
     events.warn("--assume-vertical has no effect: all priors have " + heights_text(verticals[0]));
   } else {
-    target_vertical = vertical_named(assume_vertical);
+    target_vertical = vertical_option_crs("--assume-vertical", assume_vertical);
   }
 
   const Crs target = compound(systems[0], target_vertical);

@@ -18,7 +18,7 @@ fails_with 1 "none.gml" citygml2prior none.gml -o out
 echo '<CityModel/>' >empty.gml
 fails_with 1 "holds no building" citygml2prior empty.gml -o out
 fails_with 1 "undeclared" citygml2prior good.gml -o out --crs EPSG:25832+7837
-fails_with 1 "EPSG:4326" citygml2prior good.gml -o out --crs EPSG:4326
+fails_with 2 "EPSG:4326" citygml2prior good.gml -o out --crs EPSG:4326
 fails_with 1 "good.gml: no building lies inside --bbox (W,S,E,N in EPSG:4326); the data reach over 9" citygml2prior good.gml -o out --quiet --bbox 1,1,2,2
 fails_with 1 "were the box's numbers given as S,W,N,E?" citygml2prior good.gml -o out --quiet --bbox 47,8,48,10
 fails_with 2 "--faces" citygml2prior good.gml -o out --faces some

@@ -9,8 +9,8 @@ fails_with 1 "short.txt: line 1 is no pose" drivesim $small --trajectory short.t
 fails_with 1 "absent.osm: does not exist" drivesim $small --town absent.osm -o out
 fails_with 1 "noise.osm: is not a readable OSM file" drivesim $small --town noise.osm -o out
 fails_with 1 "empty.osm: holds no street" drivesim $small --town empty.osm -o out
-fails_with 1 "is not projected; name one such as EPSG:25832+7837" drivesim $small --crs EPSG:4326 -o out
-fails_with 1 "does not count in metres" drivesim $small --crs EPSG:2263 --origin=-73.9,40.8 -o out
+fails_with 2 "is not projected; name one such as EPSG:25832+7837" drivesim $small --crs EPSG:4326 -o out
+fails_with 2 "does not count in metres" drivesim $small --crs EPSG:2263 --origin=-73.9,40.8 -o out
 fails_with 1 "absent.tif" drivesim $small --terrain absent.tif -o out
 fails_with 1 "there" drivesim $small -o there
 fails_with 1 "there" drivesim $small -o there --overwrite

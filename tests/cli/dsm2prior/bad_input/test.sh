@@ -6,12 +6,12 @@ utm="--source-crs EPSG:32632"
 fails_with 1 "absent.tif: does not exist" dsm2prior absent.tif -o prior
 fails_with 1 "text.tif: is no raster" dsm2prior text.tif -o prior
 fails_with 1 "no_crs.asc: has no coordinate reference system; name it with --source-crs" dsm2prior no_crs.asc -o prior
-fails_with 1 "EPSG:4326 is not projected" dsm2prior no_crs.asc $utm --crs EPSG:4326 -o prior
-fails_with 1 "EPSG:2263 is not in metres" dsm2prior no_crs.asc $utm --crs EPSG:2263 -o prior
+fails_with 2 "EPSG:4326 is not projected" dsm2prior no_crs.asc $utm --crs EPSG:4326 -o prior
+fails_with 2 "EPSG:2263 is not in metres" dsm2prior no_crs.asc $utm --crs EPSG:2263 -o prior
 fails_with 1 "heights are undeclared, but the prior is asked for in EPSG:32632+5773; say --assume-vertical EPSG:5773 if they are in it" dsm2prior no_crs.asc $utm --crs EPSG:32632+5773 -o prior
-fails_with 1 "--crs" dsm2prior no_crs.asc $utm --crs nonsense -o prior
-fails_with 1 "is no vertical CRS" dsm2prior no_crs.asc $utm --assume-vertical EPSG:4326 -o prior
-fails_with 1 "--bbox-crs" dsm2prior no_crs.asc $utm --quiet --bbox 1,2,3,4 --bbox-crs nonsense -o prior
+fails_with 2 "--crs" dsm2prior no_crs.asc $utm --crs nonsense -o prior
+fails_with 2 "is no vertical CRS" dsm2prior no_crs.asc $utm --assume-vertical EPSG:4326 -o prior
+fails_with 2 "--bbox-crs" dsm2prior no_crs.asc $utm --quiet --bbox 1,2,3,4 --bbox-crs nonsense -o prior
 fails_with 1 "no_crs.asc: no height lies inside --bbox" dsm2prior no_crs.asc $utm --quiet --bbox 7,43,8,44 -o prior
 fails_with 1 "empty.asc: holds no height" dsm2prior empty.asc $utm --quiet -o prior
 fails_with 2 "--bbox is empty" dsm2prior no_crs.asc $utm --bbox 8,43,7,44 -o prior

@@ -6,9 +6,9 @@ echo "no map" >input_text.shp
 refuses 1 "input_text.shp" footprints2prior input_text.shp
 head -c 700 "$town" >input_cut.geojson
 refuses 1 "input_cut.geojson" footprints2prior input_cut.geojson
-refuses 1 "has no field 'height'; it has: h, storeys" footprints2prior "$town" --height-field height
-refuses 1 "has no layer 'roads'" footprints2prior "$town" --layer roads
-refuses 1 "not projected" footprints2prior "$town" --crs EPSG:4326
+refuses 2 "has no field 'height'; it has: h, storeys" footprints2prior "$town" --height-field height
+refuses 2 "has no layer 'roads'; it has: town" footprints2prior "$town" --layer roads
+refuses 2 "not projected" footprints2prior "$town" --crs EPSG:4326
 refuses 1 "--assume-vertical" footprints2prior "$town" --crs EPSG:25832+5773
 refuses 1 "--bbox" footprints2prior "$town" --quiet --bbox 20,20,21,21
 refuses 2 "--faces" footprints2prior "$town" --faces some

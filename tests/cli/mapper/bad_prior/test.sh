@@ -5,8 +5,8 @@ mkdir folder
 fails_with 1 "folder" mapper --scans drive --prior folder $start -o out
 printf 'ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n' >none.ply
 fails_with 1 "none.ply: the prior holds no points" mapper --scans drive --prior none.ply $start -o out
-fails_with 1 "drive/prior.ply: EPSG:4326 is no projected CRS" mapper --scans drive --prior drive/prior.ply --prior-crs EPSG:4326 $start -o out
-fails_with 1 "EPSG:999999" mapper --scans drive --prior drive/prior.ply --prior-crs EPSG:999999 $start -o out
+fails_with 2 "--prior-crs EPSG:4326 is not projected" mapper --scans drive --prior drive/prior.ply --prior-crs EPSG:4326 $start -o out
+fails_with 2 "--prior-crs: " mapper --scans drive --prior drive/prior.ply --prior-crs EPSG:999999 $start -o out
 # Another place: it says how far.
 fails_with 1 "prior and scans are in different places: the initial pose is 4950 m from the nearest tile" \
   mapper --scans drive --prior drive/prior.ply --initial-pose 0,5000,0,0,0,0,1 -o out

@@ -13,8 +13,8 @@ refuses 1 "holds no building" osm2prior input_bare.osm
 cp "$town" input_town.txt
 refuses 1 "input_town.txt" osm2prior input_town.txt
 
-refuses 1 "not projected" osm2prior "$town" --crs EPSG:4326
-refuses 1 "EPSG:99999" osm2prior "$town" --crs EPSG:99999
+refuses 2 "not projected" osm2prior "$town" --crs EPSG:4326
+refuses 2 "--crs: " osm2prior "$town" --crs EPSG:99999
 refuses 1 "say --assume-vertical EPSG:5773 if they are in it" osm2prior "$town" --crs EPSG:25832+5773
 refuses 1 "no building lies inside --bbox (W,S,E,N in EPSG:4326); the data reach over" osm2prior "$town" --quiet --bbox 20,20,21,21
 refuses 2 "--bbox" osm2prior "$town" --bbox 2,2,1,1

@@ -6,7 +6,7 @@ fails_with 2 "cloud.doc" priorexport a -o cloud.doc
 fails_with 2 "--bbox is empty" priorexport a --bbox 12,48,11,49 -o cloud.las
 fails_with 2 "--bbox" priorexport a --bbox 1,2,3 -o cloud.las
 fails_with 1 "a: has no point inside --bbox" priorexport a --bbox 1,2,3,4 -o cloud.las
-fails_with 1 "nonsense" priorexport a --bbox 1,2,3,4 --bbox-crs nonsense -o cloud.las
+fails_with 2 "--bbox-crs: " priorexport a --bbox 1,2,3,4 --bbox-crs nonsense -o cloud.las
 fails_with 1 "absent" priorexport absent -o cloud.las
 echo precious >cloud.las
 fails_with 1 "cloud.las: exists already; --overwrite replaces it" priorexport a -o cloud.las

@@ -31,7 +31,7 @@ struct FootprintFields {
 /// @param footprints  to append to: east before north, in the CRS that is returned; heights of the geometry are not used
 /// @param file_index  `Footprint::file` of what is appended
 /// @return the CRS of all layers, horizontal; none: they declare none
-/// @throws IoError, FormatError (no vector file, no polygons, no such layer or field), CrsError when layers of the file differ in their CRS
+/// @throws IoError, FormatError (no vector file, no polygons), UsageError (no such layer or field), CrsError when layers of the file differ in their CRS
 std::optional<Crs> read_ogr_footprints(const std::filesystem::path& file, const FootprintFields& fields, Diagnostics& diagnostics, FootprintList& footprints,
                                        std::uint16_t file_index = 0);
 
