@@ -413,6 +413,31 @@ TEST(MergePriors, AnotherZoneComesIntoTheFirstPriorsCrs) {
   EXPECT_EQ(moved[0].z(), 100);
 }
 
+TEST(MergePriors, APriorFarFromTheOthersIsWarnedOf) {
+  const TestFolder folder;
+  const auto write = [&](const std::string& name, const std::string& crs, const Eigen::Vector2d& corner) {
+    write_raster(folder / name, source(name, "airborne"), 2, 200, flat, everywhere, PointClass::ground, crs, corner);
+  };
+  write("munich", "EPSG:25832", {691'000, 5'336'000});
+  write("augsburg", "EPSG:25832", {640'000, 5'358'000});          // 55 km from Munich
+  write("between", "EPSG:25832", {664'000, 5'347'000});
+  write("munich_33", "EPSG:25833", {245'000, 5'338'000});         // the zone does not make it another place
+  write("berlin", "EPSG:25833", {391'000, 5'820'000});            // 504 km from Munich
+  const auto warning = [&](const std::vector<std::string>& names) {
+    std::vector<std::filesystem::path> inputs;
+    for (const std::string& name : names) inputs.push_back(folder / name);
+    std::string text;
+    Events events;
+    events.warning = [&](const std::string& message) { text += message; };
+    merge_priors(inputs, folder / "merged", {}, Overwrite::allow, 1, "test", events);
+    return text;
+  };
+  EXPECT_EQ(warning({"munich", "munich_33"}), "");
+  EXPECT_EQ(warning({"munich", "augsburg", "between"}), "") << "a chain of neighbours";
+  EXPECT_NE(warning({"munich", "augsburg"}).find("augsburg: lies 55 km"), std::string::npos);
+  EXPECT_NE(warning({"berlin", "munich", "munich_33"}).find("munich: lies 50"), std::string::npos) << warning({"berlin", "munich", "munich_33"});
+}
+
 TEST(MergePriors, ADamagedTileIsRefused) {
   const TestFolder folder;
   write_raster(folder / "a", source("a", "raster"), 10, 100, flat);

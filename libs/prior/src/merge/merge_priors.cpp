@@ -14,6 +14,7 @@
 #include <priormap/prior/prior_writer.hpp>
 
 #include "merge/common_crs.hpp"
+#include "merge/distant_priors.hpp"
 #include "merge/footprints.hpp"
 #include "merge/merge_rules.hpp"
 #include "merge/merged_sources.hpp"
@@ -205,6 +206,7 @@ MergeReport merge_priors(const std::vector<std::filesystem::path>& inputs, const
   if (inputs.empty()) throw UsageError("there is no prior to merge");
   const std::vector<PriorStore> stores = open_all(inputs);
   CommonCrs crs = common_crs(stores, options.assume_vertical, events);
+  warn_of_distant_priors(stores, crs, events);
   const MergedSources sources = merged_sources(stores, crs, options);
 
   const MergeRules::Parameters parameters{options.min_distance_m, options.keep_guessed_roofs, crs.horizontal_unit_m, crs.vertical_unit_m};
