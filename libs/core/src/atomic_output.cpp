@@ -4,15 +4,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <functional>
 
 #include <priormap/core/error.hpp>
 
 #include "pending_outputs.hpp"
+#include "temporary_output.hpp"
 
 namespace priormap {
 namespace fs = std::filesystem;
@@ -32,17 +31,6 @@ void create_parent(const fs::path& target) {
   std::error_code error;
   fs::create_directories(target.parent_path(), error);
   if (error) throw IoError(target.parent_path(), "cannot be created: " + error.message());
-}
-
-// Keeps the extension, by which some writers choose their format. `create` answers false with errno set.
-fs::path create_temporary(const fs::path& target, const fs::path& folder, const std::function<bool(const fs::path&)>& create) {
-  static std::atomic<unsigned> serial = 0;
-  for (;;) {
-    fs::path temporary = folder / (".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(serial++) + "-" +
-                                                 target.filename().string());
-    if (create(temporary)) return temporary;
-    if (errno != EEXIST) throw IoError(target, cause("cannot be created"));
-  }
 }
 
 [[noreturn]] void refuse_existing(const fs::path& target) { throw IoError(target, "exists already; --overwrite replaces it"); }
@@ -80,7 +68,7 @@ void rename_to_new_name(const fs::path& from, const fs::path& to) {
 /// Afterwards `to` holds what was `from`, and `from` what was `to`.
 void exchange_directories(const fs::path& from, const fs::path& to) {
   if (rename_with(from, to, RENAME_EXCHANGE)) return;
-  const fs::path old = fs::path(from).concat("-old");
+  const fs::path old = from.parent_path() / (".replaced" + from.filename().string());   // never taken for a temporary: it may be all there is
   if (flag_unsupported() && ::rename(to.c_str(), old.c_str()) == 0) {
     if (::rename(from.c_str(), to.c_str()) == 0 && ::rename(old.c_str(), from.c_str()) == 0) return;
     const int error = errno;
@@ -109,23 +97,22 @@ void check_directory_target(const fs::path& target, Overwrite overwrite, const s
 AtomicFile::AtomicFile(fs::path target, Overwrite overwrite) : target_(resolved(target)), overwrite_(overwrite) {
   check_file_target(target_, overwrite_);
   create_parent(target_);
-  // In the target's own folder, so that the rename stays on one file system.
-  temporary_ = create_temporary(target_, target_.parent_path(), [](const fs::path& path) {
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    return descriptor >= 0 && ::close(descriptor) == 0;
-  });
-  PendingOutputs::instance().add(temporary_);
+  temporary_ = std::make_unique<TemporaryOutput>(TemporaryOutput::Kind::file, target_, target_.parent_path());
+  PendingOutputs::instance().add(temporary_path());
 }
 
+const fs::path& AtomicFile::temporary_path() const { return temporary_->path(); }
+const fs::path& AtomicDirectory::temporary_path() const { return temporary_->path(); }
+
 AtomicFile::~AtomicFile() {
-  if (!committed_) PendingOutputs::instance().discard(temporary_);
+  if (!committed_) PendingOutputs::instance().discard(temporary_path());
 }
 
 void AtomicFile::commit() {
-  sync_or_throw(temporary_, target_, ::fsync);
-  PendingOutputs::instance().publish(temporary_, [this] {
-    if (overwrite_ == Overwrite::refuse) return rename_to_new_name(temporary_, target_);
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0) throw IoError(target_, cause("cannot be put in place"));
+  sync_or_throw(temporary_path(), target_, ::fsync);
+  PendingOutputs::instance().publish(temporary_path(), [this] {
+    if (overwrite_ == Overwrite::refuse) return rename_to_new_name(temporary_path(), target_);
+    if (::rename(temporary_path().c_str(), target_.c_str()) != 0) throw IoError(target_, cause("cannot be put in place"));
   });
   committed_ = true;
   sync_parent(target_);
@@ -140,25 +127,25 @@ AtomicDirectory::AtomicDirectory(fs::path target, Overwrite overwrite, std::stri
     folder /= "." + target_.filename().string() + ".unfinished";
     if (::mkdir(folder.c_str(), 0777) != 0 && errno != EEXIST) throw IoError(target_, cause("cannot be created"));
   }
-  temporary_ = create_temporary(target_, folder, [](const fs::path& path) { return ::mkdir(path.c_str(), 0777) == 0; });
-  PendingOutputs::instance().add(temporary_);
+  temporary_ = std::make_unique<TemporaryOutput>(TemporaryOutput::Kind::directory, target_, folder);
+  PendingOutputs::instance().add(temporary_path());
 }
 
 AtomicDirectory::~AtomicDirectory() {
-  if (!committed_) PendingOutputs::instance().discard(temporary_);
+  if (!committed_) PendingOutputs::instance().discard(temporary_path());
 }
 
 void AtomicDirectory::commit() {
   // One call for the whole file system: a prior has thousands of tiles, and an fsync for each takes minutes.
-  sync_or_throw(temporary_, target_, ::syncfs);
+  sync_or_throw(temporary_path(), target_, ::syncfs);
   check_directory_target(target_, overwrite_, marker_file_);
   const bool replaces = fs::exists(target_);
-  PendingOutputs::instance().publish(temporary_, [&] {
-    replaces ? exchange_directories(temporary_, target_) : rename_to_new_name(temporary_, target_);
+  PendingOutputs::instance().publish(temporary_path(), [&] {
+    replaces ? exchange_directories(temporary_path(), target_) : rename_to_new_name(temporary_path(), target_);
   });
   committed_ = true;
   sync_parent(target_);
-  if (replaces) PendingOutputs::instance().discard(temporary_);
+  if (replaces) PendingOutputs::instance().discard(temporary_path());
 }
 
 }  // namespace priormap

@@ -1,10 +1,15 @@
 #include <priormap/core/atomic_output.hpp>
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <fstream>
+#include <functional>
 #include <sstream>
+#include <stdexcept>
+#include <vector>
 
 #include <priormap/core/error.hpp>
 
@@ -115,6 +120,93 @@ TEST_F(AtomicOutputTest, StrangersFolderIsNeverReplaced) {
   EXPECT_THROW(AtomicDirectory(folder_ / "home", Overwrite::allow, "prior.json"), IoError);
   EXPECT_EQ(read(folder_ / "home/letter.txt"), "dear");
   EXPECT_EQ(entries(), 1u);
+}
+
+/// A process that begins outputs and holds them until it is killed.
+class Maker {
+ public:
+  explicit Maker(const std::function<void()>& begin) {
+    int ready[2];
+    if (::pipe(ready) != 0) throw std::runtime_error("no pipe");
+    child_ = ::fork();
+    if (child_ == 0) {
+      begin();
+      [[maybe_unused]] const auto told = ::write(ready[1], "x", 1);
+      for (;;) ::pause();
+    }
+    char byte;
+    if (::read(ready[0], &byte, 1) != 1) throw std::runtime_error("the child failed");
+    ::close(ready[0]), ::close(ready[1]);
+  }
+  ~Maker() { kill(); }
+  void kill() {
+    if (child_ <= 0) return;
+    ::kill(child_, SIGKILL);
+    ::waitpid(child_, nullptr, 0);
+    child_ = -1;
+  }
+
+ private:
+  pid_t child_;
+};
+
+TEST_F(AtomicOutputTest, WhatAKilledProgramLeftGoesWithTheNextOfTheSameTarget) {
+  const fs::path of_file = folder_ / "file", of_directory = folder_ / "directory", of_others = folder_ / "others";
+  const auto left = [](const fs::path& folder) { return std::distance(fs::directory_iterator(folder), {}); };
+  const auto begin_all = [&] {
+    static const AtomicFile file(of_file / "a.txt", Overwrite::refuse);
+    static const AtomicDirectory directory(of_directory / "prior", Overwrite::refuse, "marker");
+    static const AtomicDirectory other(of_others / "prior", Overwrite::refuse, "marker");
+    write(directory.temporary_path() / "tile", "half");
+  };
+  Maker killed(begin_all), living(begin_all);
+  killed.kill();
+  fs::create_directory(of_directory / ".tmp-mine-prior");
+  EXPECT_EQ(left(of_file), 2);
+  EXPECT_EQ(left(of_directory), 3);
+  { AtomicFile file(of_file / "a.txt", Overwrite::refuse); }
+  { AtomicDirectory directory(of_directory / "prior", Overwrite::refuse, "marker"); }
+  { AtomicDirectory directory(of_others / "another-prior", Overwrite::refuse, "marker"); }
+  EXPECT_EQ(left(of_file), 1) << "that of the program that lives";
+  EXPECT_EQ(left(of_directory), 2) << "and that of a stranger";
+  EXPECT_EQ(left(of_others), 2) << "of another target";
+}
+
+TEST_F(AtomicOutputTest, ProgramsThatMakeTheSameAtOnceDoNotDisturbEachOther) {
+  const fs::path target = folder_ / "shared/prior";
+  constexpr int programs = 8, rounds = 50;
+  std::vector<pid_t> children;
+  for (int program = 0; program < programs; ++program) {
+    const pid_t child = ::fork();
+    if (child != 0) {
+      children.push_back(child);
+      continue;
+    }
+    for (int round = 0; round < rounds; ++round) {
+      const pid_t maker = ::fork();   // a new process: each lists the folder anew
+      if (maker == 0) {
+        try {
+          AtomicDirectory output(target, Overwrite::allow, "marker");
+          write(output.temporary_path() / "marker", "whole");
+          if (round % 5 == 0) ::raise(SIGKILL);
+          ::_exit(read(output.temporary_path() / "marker") == "whole" ? 0 : 1);   // leaves it behind as well
+        } catch (const std::exception&) {
+          ::_exit(1);
+        }
+      }
+      int status = 0;
+      ::waitpid(maker, &status, 0);
+      if (WIFEXITED(status) && WEXITSTATUS(status) != 0) ::_exit(1);
+    }
+    ::_exit(0);
+  }
+  for (const pid_t child : children) {
+    int status = 1;
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+  }
+  { AtomicDirectory last(target, Overwrite::allow, "marker"); }
+  EXPECT_TRUE(fs::is_empty(target.parent_path()));
 }
 
 TEST_F(AtomicOutputTest, InterruptionRemovesWhatIsNotCommitted) {

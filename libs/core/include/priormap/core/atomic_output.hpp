@@ -1,13 +1,15 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <string>
 
 namespace priormap {
 
 enum class Overwrite { refuse, allow };
+class TemporaryOutput;
 
 /// A file that appears under its name only when it is whole. Write to `temporary_path()`, then `commit()`.
-/// Without commit the temporary file is removed. Missing parent folders are created; a symbolic link is followed.
+/// Without commit the temporary file is removed, and what a killed program left of the same target as soon as this is made again. Missing parent folders are created; a symbolic link is followed.
 class AtomicFile {
  public:
   /// @throws IoError when `target` exists and overwriting is refused, or its folder cannot be written.
@@ -16,12 +18,13 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  const std::filesystem::path& temporary_path() const { return temporary_; }
+  const std::filesystem::path& temporary_path() const;
   /// Flushes to disk and renames. What wrote the file must have been closed and checked before (see OutputFile). @throws IoError
   void commit();
 
  private:
-  std::filesystem::path target_, temporary_;
+  std::filesystem::path target_;
+  std::unique_ptr<TemporaryOutput> temporary_;
   Overwrite overwrite_;
   bool committed_ = false;
 };
@@ -40,12 +43,13 @@ class AtomicDirectory {
   AtomicDirectory& operator=(const AtomicDirectory&) = delete;
 
   const std::filesystem::path& target() const { return target_; }
-  const std::filesystem::path& temporary_path() const { return temporary_; }
+  const std::filesystem::path& temporary_path() const;
   /// Renames into place; the replaced directory is removed last. @throws IoError
   void commit();
 
  private:
-  std::filesystem::path target_, temporary_;
+  std::filesystem::path target_;
+  std::unique_ptr<TemporaryOutput> temporary_;
   Overwrite overwrite_;
   std::string marker_file_;
   bool committed_ = false;
