@@ -105,4 +105,6 @@ function(priormap_install)
   install(FILES "${PROJECT_BINARY_DIR}/priormapConfig.cmake" "${PROJECT_BINARY_DIR}/priormapConfigVersion.cmake"
     DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/priormap")
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/schemas/" DESTINATION "${CMAKE_INSTALL_DATADIR}/priormap/schemas")
+  install(FILES README.md CHANGELOG.md LICENSE NOTICE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
+  install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" FILES_MATCHING PATTERN "*.md" PATTERN man EXCLUDE)
 endfunction()
