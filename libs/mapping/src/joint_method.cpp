@@ -21,10 +21,14 @@ class JointMethod : public MappingMethod {
       : options_(options), prior_(prior), first_velocity_(steady_velocity(Eigen::Isometry3d::Identity(), first.motion, first.motion_s)), reducer_(options.reduce_m),
         odometry_(options.odometry, first_velocity_), tracker_(options.tracking, options.reduce_m, prior, first.T_map_sensor) {}
 
-  void place(const Scan& scan, MappedScan& mapped) override {
-    SurfelCloud surfels = reducer_.reduce(scan.points);
-    const OdometryStep step = odometry_.step(surfels, scan.stamp_s);
-    follow(step, mapped, [&] { return surfels; });
+  PrepareScan preparation() const override {
+    return [reducer = ScanReducer(options_.reduce_m)](const Scan& scan) mutable { return ReadyScan{facts_of(scan), reducer.reduce(scan.points), {}, {}}; };
+  }
+
+  MappedScan place(ReadyScan scan) override {
+    const OdometryStep step = odometry_.step(scan.surfels, scan.facts.stamp_s);
+    follow(step, scan.facts, [&] { return std::move(scan.surfels); });
+    return scan.facts;
   }
 
   void place_stretches(const Stretches& wanted, const std::function<void(std::vector<MappedScan>)>& placed) override {
@@ -72,6 +76,7 @@ class JointMethod : public MappingMethod {
   /// Goes on by the odometry of a stretch. Where it does not fit the one so far, the stretch is driven again by that one.
   std::vector<MappedScan> join(const Stretch& stretch, DrivenStretch&& driven, const ScanSource& source) {
     std::vector<MappedScan> placed;
+    const PrepareScan prepare = preparation();
     const std::optional<Eigen::Isometry3d> T = records_.empty() ? Eigen::Isometry3d::Identity() : T_odom_stretch(records_, driven.shared);
     if (T) {
       T_odom_own_ = *T;
@@ -84,8 +89,7 @@ class JointMethod : public MappingMethod {
       if (T) {
         follow(here.step, mapped, [&] { return straightened(source.read(i), here.step.velocity); });
       } else {
-        mapped.step_s = 0;
-        place(source.read(i), mapped);
+        mapped = place(prepare(source.read(i)));
       }
       mapped.step_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       placed.push_back(mapped);

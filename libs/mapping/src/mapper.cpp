@@ -1,5 +1,7 @@
 #include <priormap/mapping/mapper.hpp>
 
+#include <utility>
+
 #include <priormap/core/error.hpp>
 
 #include "mapping_method.hpp"
@@ -8,6 +10,7 @@ namespace priormap {
 
 struct Mapper::State {
   std::unique_ptr<MappingMethod> method;
+  PrepareScan prepare;
   std::vector<MappedScan> scans;
 };
 
@@ -16,6 +19,7 @@ Mapper::Mapper(const MapperOptions& options, const std::optional<NearTiles>& pri
     state_->method = make_paper_method(*paper, prior, first, threads);
   else
     state_->method = make_joint_method(std::get<JointMethodOptions>(options.method), prior, first);
+  state_->prepare = preparation();
 }
 Mapper::~Mapper() = default;
 Mapper::Mapper(Mapper&&) noexcept = default;
@@ -34,12 +38,14 @@ void MappingMethod::place_stretches(const Stretches&, const std::function<void(s
   throw UsageError("--jobs goes with --preset default: the paper's method matches each scan to the prior from where the scan before it was placed, so that no stretch can begin before the last one ends");
 }
 
-const MappedScan& Mapper::step(const Scan& scan) {
-  MappedScan mapped = facts_of(scan);
-  state_->method->place(scan, mapped);
-  state_->scans.push_back(mapped);
+PrepareScan Mapper::preparation() const { return state_->method->preparation(); }
+
+const MappedScan& Mapper::step(ReadyScan scan) {
+  state_->scans.push_back(state_->method->place(std::move(scan)));
   return state_->scans.back();
 }
+
+const MappedScan& Mapper::step(const Scan& scan) { return step(state_->prepare(scan)); }
 
 void Mapper::step_stretches(const ScanSource& source, std::size_t first, std::size_t last, const StretchOptions& options, int jobs,
                             const std::function<void(std::span<const MappedScan>)>& placed) {

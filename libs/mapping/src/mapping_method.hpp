@@ -39,8 +39,10 @@ MappedScan facts_of(const Scan& scan);
 class MappingMethod {
  public:
   virtual ~MappingMethod() = default;
-  /// Places a scan when it comes: fills the online pose, the verdict and the figures of `mapped`.
-  virtual void place(const Scan& scan, MappedScan& mapped) = 0;
+  /// As Mapper::preparation.
+  virtual PrepareScan preparation() const = 0;
+  /// Places a scan when it comes. @return its facts with the online pose, the verdict and the figures
+  virtual MappedScan place(ReadyScan scan) = 0;
   /// Places those of the scans that are not placed yet, and tells after each stretch. @throws UsageError where each scan needs the one before
   virtual void place_stretches(const Stretches& stretches, const std::function<void(std::vector<MappedScan>)>& placed);
   /// The poses of all scans from everything that is known at the end.

@@ -34,7 +34,8 @@ class PaperMethod : public MappingMethod {
     if (prior) prior_.emplace(*prior, VoxelHashMap(options.voxels));
   }
 
-  void place(const Scan& scan, MappedScan& mapped) override;
+  PrepareScan preparation() const override;
+  MappedScan place(ReadyScan scan) override;
   std::vector<EstimatedPose> finish(const ReadScan&) override;
   void exchange(StateArchive& archive) override;
 
@@ -60,18 +61,29 @@ Matrix6d information_a_point(const RegistrationResult& match, std::size_t num_po
   return match.information / static_cast<double>(std::max<std::size_t>(num_points, 1));
 }
 
-void PaperMethod::place(const Scan& scan, MappedScan& mapped) {
-  mapped.motion_undone = false;   // the paper takes sweeps as they are
+PrepareScan PaperMethod::preparation() const {
+  return [downsample_m = options_.downsample_m](const Scan& scan) {
+    ReadyScan ready{facts_of(scan), {}, positions_of(scan.points), {}};
+    ready.facts.motion_undone = false;   // the paper takes sweeps as they are
+    ready.thinned = voxel_downsample_centroid(ready.points, downsample_m);
+    return ready;
+  };
+}
+
+MappedScan PaperMethod::place(ReadyScan scan) {
+  MappedScan& mapped = scan.facts;
+  const PointCloud& points = scan.thinned;
   const bool first = pose_of_scan_.empty();
-  const PointCloud all = positions_of(scan.points);
-  const PointCloud points = voxel_downsample_centroid(all, options_.downsample_m);
   const Eigen::Isometry3d guess = first ? T_map_last_ : predict(T_map_before_last_, T_map_last_);
 
   std::optional<RegistrationResult> to_local, to_prior;
   if (!local_map_.empty()) {
     to_local = register_scan(points, local_map_, guess, options_.icp, threads_);
     mapped.local = figures_of(*to_local, accepts(*to_local));
-    if (to_local->converged && stands_still(*to_local)) return repeat_last(mapped);
+    if (to_local->converged && stands_still(*to_local)) {
+      repeat_last(mapped);
+      return mapped;
+    }
   }
   if (prior_) {
     to_prior = register_scan(points, prior_->around(guess.translation()), guess, options_.icp, threads_);
@@ -96,8 +108,9 @@ void PaperMethod::place(const Scan& scan, MappedScan& mapped) {
   T_map_before_last_ = first ? mapped.T_map_online * motion_before.inverse() : T_map_last_;
   T_map_last_ = mapped.T_map_online;
   // The whole scan, as the voxel map takes it: with the thinned one alone a start at speed is taken for a standstill.
-  local_map_.insert(all, T_map_last_);
+  local_map_.insert(scan.points, T_map_last_);
   local_map_.remove_beyond(T_map_last_.translation(), options_.local_map_radius_m);
+  return mapped;
 }
 
 /// Motion counts from the last pose that was added: creeping along adds up until it is seen. A vehicle that turns on the spot does not stand still.

@@ -70,10 +70,10 @@ void map_scans(OnlinePass& pass, const ScanSource& source, ScanRange range, cons
     });
     return;
   }
-  ReadAhead scans(source, range.first + pass.step_s.size(), range.last);
+  ReadAhead<ReadyScan> scans([&source, prepare = pass.mapper.preparation()](std::size_t index) { return prepare(source.read(index)); }, range.first + pass.step_s.size(), range.last);
   Stopwatch watch;
-  while (const auto scan = scans.next()) {
-    pass.mapper.step(*scan);
+  while (auto scan = scans.next()) {
+    pass.mapper.step(std::move(*scan));
     pass.step_s.push_back(watch.lap());
     went_on();
   }

@@ -2,6 +2,7 @@
 
 #include <priormap/core/error.hpp>
 #include <priormap/mapping/read_ahead.hpp>
+#include <priormap/mapping/scan_source.hpp>
 
 namespace priormap {
 namespace {
@@ -25,16 +26,20 @@ class Numbers : public ScanSource {
   ScanSourceInfo info_;
 };
 
+std::function<Scan(std::size_t)> reading(const Numbers& source) {
+  return [&](std::size_t index) { return source.read(index); };
+}
+
 TEST(ReadAhead, GivesEachScanOnceInOrder) {
   const Numbers source;
-  ReadAhead scans(source, 3, 40, 2);
+  ReadAhead<Scan> scans(reading(source), 3, 40, 2);
   for (std::size_t i = 3; i < 40; ++i) EXPECT_EQ(scans.next()->index, i);
   EXPECT_FALSE(scans.next());
 }
 
 TEST(ReadAhead, HandsOnWhatReadingThrewAfterTheScansBefore) {
   const Numbers source(2);
-  ReadAhead scans(source, 0, 50);
+  ReadAhead<Scan> scans(reading(source), 0, 50);
   EXPECT_EQ(scans.next()->index, 0u);
   EXPECT_EQ(scans.next()->index, 1u);
   EXPECT_THROW(scans.next(), FormatError);
@@ -42,7 +47,7 @@ TEST(ReadAhead, HandsOnWhatReadingThrewAfterTheScansBefore) {
 
 TEST(ReadAhead, CanBeLeftInTheMiddle) {
   const Numbers source;
-  ReadAhead scans(source, 0, 50, 1);
+  ReadAhead<Scan> scans(reading(source), 0, 50, 1);
   EXPECT_TRUE(scans.next());
 }
 

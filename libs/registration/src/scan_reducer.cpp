@@ -13,6 +13,12 @@ std::size_t hash_of(std::uint64_t key) { return (key * 0x9e3779b97f4a7c15u) >> 3
 /// The point of four floats [x, y, z, any]: SSE2 on x86-64, NEON on arm64.
 typedef float vfloat4 __attribute__((vector_size(16), aligned(4), may_alias));
 typedef std::int32_t vint4 __attribute__((vector_size(16)));
+typedef std::int64_t vlong2 __attribute__((vector_size(16)));
+
+bool any_of_three(vint4 v) {
+  const vlong2 halves = reinterpret_cast<vlong2>(v & vint4{-1, -1, -1, 0});
+  return (halves[0] | halves[1]) != 0;
+}
 
 std::uint64_t key_of(std::int32_t x, std::int32_t y, std::int32_t z) {
   return (std::uint64_t(std::uint32_t(x + half_range)) << 42) | (std::uint64_t(std::uint32_t(y + half_range)) << 21) | std::uint32_t(z + half_range);
@@ -76,14 +82,18 @@ ScanReducer::Cell& ScanReducer::add_cell(std::uint64_t key, std::size_t slot) {
   return cell_of(key);
 }
 
-/// Adds `count` points; the float after the last one must be readable.
+/// Adds `count` points; the float after the last one must be readable. Sums stay in registers as long as points fall into one voxel, as neighbours on a ring do.
 template <bool timed>
 void ScanReducer::add(const float* xyz, const float* time_s, std::size_t count) {
   constexpr auto limit = float(half_range);
   const float per_metre = 1.0f / voxel_m_;
   const vfloat4 ones = {1.0f, 1.0f, 1.0f, 1.0f};
   vint4 last = vint4{} + half_range;  // no point's voxel
-  Cell* cell = nullptr;
+  vfloat4 sums[3];
+  vfloat4* place = nullptr;  // of the sums
+  const auto put_down = [&] {
+    if (place) std::copy(sums, sums + 3, place);
+  };
   for (const float* const end = xyz + 3 * count; xyz != end; xyz += 3, time_s += timed) {
     const vfloat4 p = *reinterpret_cast<const vfloat4*>(xyz);
     const vfloat4 v = p * per_metre;
@@ -91,20 +101,22 @@ void ScanReducer::add(const float* xyz, const float* time_s, std::size_t count) 
     const vint4 truncated = __builtin_convertvector(v, vint4);
     const vint4 voxel = truncated + (v < __builtin_convertvector(truncated, vfloat4));  // the floor: true is -1
     const vint4 changed = (voxel ^ last) | ~inside;
-    if (changed[0] | changed[1] | changed[2]) {
-      if (!(inside[0] & inside[1] & inside[2])) continue;
-      cell = &cell_of(key_of(voxel[0], voxel[1], voxel[2]));
+    if (any_of_three(changed)) {
+      if (any_of_three(~inside)) continue;
+      put_down();
+      place = reinterpret_cast<vfloat4*>(cell_of(key_of(voxel[0], voxel[1], voxel[2])).sums);
+      std::copy(place, place + 3, sums);
       last = voxel;
     }
     const vfloat4 r = p - (__builtin_convertvector(voxel, vfloat4) + 0.5f) * voxel_m_;
     const vfloat4 with_one = __builtin_shufflevector(r, ones, 0, 1, 2, 7);
-    vfloat4* const sums = reinterpret_cast<vfloat4*>(cell->sums);
     sums[0] += with_one;
     sums[1] += __builtin_shufflevector(r, r, 0, 0, 0, 1) * __builtin_shufflevector(r, r, 0, 1, 2, 1);
     vfloat4 third = __builtin_shufflevector(r, ones, 1, 2, 4, 4) * __builtin_shufflevector(r, ones, 2, 2, 4, 4);
     if constexpr (timed) third[2] = *time_s;
     sums[2] += third;
   }
+  put_down();
 }
 
 SurfelCloud ScanReducer::reduce(const PointCloud& scan) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <numbers>
 
 #include <priormap/core/error.hpp>
@@ -57,9 +58,20 @@ void check_span(const std::vector<float>& times_s, const fs::path& file) {
 
 bool is_measurement(const Eigen::Vector3f& p) { return p.allFinite() && p.squaredNorm() > min_range_m * min_range_m; }
 
+/// Without a branch a point: in most scans each is a measurement.
+bool all_are_measurements(const std::vector<Eigen::Vector3f>& points) {
+  std::size_t count = 0;
+  for (const Eigen::Vector3f& p : points) {
+    const float range2 = p.squaredNorm();
+    count += (range2 > min_range_m * min_range_m) & (range2 <= std::numeric_limits<float>::max());
+  }
+  return count == points.size();
+}
+
 /// Points that are no return, or of which nobody knows when within the sweep they were seen.
 std::size_t drop_non_measurements(PointCloud& cloud) {
   const bool timed = !cloud.time_s.empty();
+  if (!timed && all_are_measurements(cloud.xyz)) return 0;
   std::vector<std::uint32_t> kept;
   kept.reserve(cloud.size());
   for (std::uint32_t i = 0; i < cloud.size(); ++i)

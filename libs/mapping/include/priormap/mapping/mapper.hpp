@@ -11,6 +11,7 @@
 #include <priormap/mapping/mapper_options.hpp>
 #include <priormap/mapping/prior_window.hpp>
 #include <priormap/mapping/scan_source.hpp>
+#include <priormap/registration/surfel.hpp>
 
 namespace priormap {
 
@@ -20,6 +21,16 @@ struct FirstPose {
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();   ///< T_previous_sensor,
   double motion_s = 0.1;                                      ///< in that time
 };
+
+/// A scan made ready to be placed, as far as no pose is needed for it.
+struct ReadyScan {
+  MappedScan facts;             ///< all but where it was taken
+  SurfelCloud surfels;          ///< for the default method
+  PointCloud points, thinned;   ///< for the paper's
+};
+
+/// Keeps buffers from scan to scan: one a thread.
+using PrepareScan = std::function<ReadyScan(const Scan&)>;
 
 /// Reads a scan of the recording again, by its index.
 using ReadScan = std::function<Scan(std::size_t)>;
@@ -33,7 +44,10 @@ class Mapper {
   ~Mapper();
   Mapper(Mapper&&) noexcept;
 
+  /// Makes scans ready for this mapper, by a thread of its own if wanted.
+  PrepareScan preparation() const;
   /// Places one scan. @return where it was taken, as far as is known when it comes
+  const MappedScan& step(ReadyScan scan);
   const MappedScan& step(const Scan& scan);
 
   /// Places the scans [first, last) of a source that it has not placed yet, `jobs` stretches at once: each is driven by an odometry of its own, and joined to the one before.
