@@ -56,6 +56,9 @@ struct Sums {
 struct Table {
   /// out = R p + t.
   void (*transform)(const Pose& pose, const Source& source, float* x, float* y, float* z);
+  /// Which of the points have moved farther than the square root of their bound. @param which  room for all @return how many; of the padding those with a negative bound
+  std::size_t (*find_moved)(const float* x, const float* y, const float* z, const float* from_x, const float* from_y, const float* from_z, const float* bound2,
+                            std::size_t padded, std::uint32_t* which);
   /// The nearest and second-nearest mean within the 27 voxels for the queries `which`, given relative to the corner of voxel `anchor`.
   void (*find_nearest)(const MapView& map, const std::int32_t* anchor, const float* x, const float* y, const float* z, const std::uint32_t* which,
                        std::size_t count, const Nearest& out);

@@ -47,78 +47,139 @@ inline std::int32_t floor_of(float v) {
   return i - (v < float(i));
 }
 
-/// The runs of candidates of one query: rows of up to three voxels along x, cut where a block ends.
-struct Run {
-  std::uint32_t block, begin;
-  int number;  // of its first candidate
+typedef float vfour __attribute__((vector_size(16), aligned(4), may_alias));
+typedef std::int32_t vfour_int __attribute__((vector_size(16), aligned(4), may_alias));
+
+/// Distances from the means seen so far, lane by lane: of each the least with its number, and the second least.
+struct Least {
+  vfloat first = all(far), second = all(far);
+  vint number = vint{};
+
+  void add(vfloat squared, vint numbers) {
+    const vint closer = squared < first;
+    const vfloat loser = closer ? first : squared;
+    second = loser < second ? loser : second;
+    first = closer ? squared : first;
+    number = closer ? numbers : number;
+  }
 };
 
-constexpr int max_candidates = 252;
-typedef float vfour __attribute__((vector_size(16), aligned(4), may_alias));  // a run is seldom longer
-inline vfour load4(const float* p) { return *reinterpret_cast<const vfour*>(p); }
+/// Four lanes of them.
+struct LeastOfFour {
+  vfour first, second;
+  vfour_int number;
 
+  /// Of equal ones the lowest number counts, whatever the width of the registers.
+  void join(const LeastOfFour& other) {
+    const vfour loser = first > other.first ? first : other.first;
+    const vfour seconds = other.second < second ? other.second : second;
+    second = loser < seconds ? loser : seconds;
+    const vfour_int replaced = (other.first < first) | ((other.first == first) & (other.number < number));
+    first = replaced ? other.first : first;
+    number = replaced ? other.number : number;
+  }
+};
+
+/// Of all lanes, in the first one.
+LeastOfFour least_of_all(const Least& lanes) {
+  const auto* first = reinterpret_cast<const vfour*>(&lanes.first);
+  const auto* second = reinterpret_cast<const vfour*>(&lanes.second);
+  const auto* number = reinterpret_cast<const vfour_int*>(&lanes.number);
+  LeastOfFour least{first[0], second[0], number[0]};
+  for (int part = 1; part < LANES / 4; ++part) least.join({first[part], second[part], number[part]});
+  least.join({__builtin_shufflevector(least.first, least.first, 2, 3, 0, 1), __builtin_shufflevector(least.second, least.second, 2, 3, 0, 1),
+              __builtin_shufflevector(least.number, least.number, 2, 3, 0, 1)});
+  least.join({__builtin_shufflevector(least.first, least.first, 1, 0, 3, 2), __builtin_shufflevector(least.second, least.second, 1, 0, 3, 2),
+              __builtin_shufflevector(least.number, least.number, 1, 0, 3, 2)});
+  return least;
+}
+
+/// The 2 x 2 x 2 blocks from one on, looked up when they are asked for: neighbouring queries mostly ask for the same.
+class BlocksAround {
+ public:
+  explicit BlocksAround(const MapView& map) : map_(map) {}
+  void move_to(const std::int32_t* key) {
+    if (key[0] == key_[0] && key[1] == key_[1] && key[2] == key_[2] && known_) return;
+    for (int a = 0; a < 3; ++a) key_[a] = key[a];
+    for (std::uint32_t& number : numbers_) number = unknown;
+    known_ = true;
+  }
+  std::uint32_t at(int x, int y, int z) {
+    std::uint32_t& number = numbers_[x + 2 * y + 4 * z];
+    if (number == unknown) number = find_block(map_, key_[0] + x, key_[1] + y, key_[2] + z);
+    return number;
+  }
+  /// One that was asked for.
+  std::uint32_t known(int i) const { return numbers_[i]; }
+
+ private:
+  static constexpr std::uint32_t unknown = 0xfffffffeu;
+  const MapView& map_;
+  std::int32_t key_[3] = {};
+  std::uint32_t numbers_[8];
+  bool known_ = false;
+};
+
+/// Voxels along one axis of a block, of three in a row that begin in the block before it (`beyond`) or in it.
+struct Voxels {
+  std::int32_t first, last;
+  Voxels(bool beyond, std::int32_t inside) : first(beyond ? 0 : inside), last(beyond ? inside - 6 : inside > 5 ? 7 : inside + 2) {}
+};
+
+/// A layer of a block at a time: from its first voxel in reach to its last one surfels lie in a row, with some to the left and the right of those in reach among them.
 void find_nearest(const MapView& map, const std::int32_t* anchor, const float* qx, const float* qy, const float* qz, const std::uint32_t* which,
                   std::size_t count, const Nearest& out) {
   const float per_metre = 1.0f / map.voxel_m;
+  BlocksAround blocks(map);
   for (std::size_t w = 0; w < count; ++w) {
     const std::uint32_t q = which[w];
-    const std::int32_t low[3] = {floor_of(qx[q] * per_metre) - 1, floor_of(qy[q] * per_metre) - 1, floor_of(qz[q] * per_metre) - 1};
-    // The up to 2 x 2 x 2 blocks that the 27 voxels touch.
-    std::int32_t first_key[3], inside[3];
-    for (int a = 0; a < 3; ++a) {
-      first_key[a] = (low[a] + anchor[a]) >> 3;
-      inside[a] = (low[a] + anchor[a]) & 7;
-    }
-    Run runs[18];
-    int run_count = 0, number = 0;
-    float squared[max_candidates + 4];
+    const std::int32_t low[3] = {floor_of(qx[q] * per_metre) - 1 + anchor[0], floor_of(qy[q] * per_metre) - 1 + anchor[1], floor_of(qz[q] * per_metre) - 1 + anchor[2]};
+    const std::int32_t first_key[3] = {low[0] >> 3, low[1] >> 3, low[2] >> 3}, inside[3] = {low[0] & 7, low[1] & 7, low[2] & 7};
+    blocks.move_to(first_key);
+    Least least;
     for (int bz = 0; bz <= (inside[2] > 5); ++bz)
       for (int by = 0; by <= (inside[1] > 5); ++by)
         for (int bx = 0; bx <= (inside[0] > 5); ++bx) {
-          const std::int32_t key[3] = {first_key[0] + bx, first_key[1] + by, first_key[2] + bz};
-          const std::uint32_t b = find_block(map, key[0], key[1], key[2]);
+          const std::uint32_t b = blocks.at(bx, by, bz);
           if (b == 0xffffffffu) continue;
           const BlockView& block = map.blocks[b];
-          const float x = qx[q] - map.voxel_m * float(8 * key[0] - anchor[0]);
-          const float y = qy[q] - map.voxel_m * float(8 * key[1] - anchor[1]);
-          const float z = qz[q] - map.voxel_m * float(8 * key[2] - anchor[2]);
-          const int x0 = bx ? 0 : inside[0], x1 = bx ? inside[0] - 6 : (inside[0] > 5 ? 7 : inside[0] + 2);
-          const int y0 = by ? 0 : inside[1], y1 = by ? inside[1] - 6 : (inside[1] > 5 ? 7 : inside[1] + 2);
-          const int z0 = bz ? 0 : inside[2], z1 = bz ? inside[2] - 6 : (inside[2] > 5 ? 7 : inside[2] + 2);
-          for (int vz = z0; vz <= z1; ++vz)
-            for (int vy = y0; vy <= y1; ++vy) {
-              const int row = 8 * (vy + 8 * vz);
-              const std::uint32_t begin = block.begin[row + x0], end = block.begin[row + x1 + 1];
-              if (begin == end) continue;
-              if (number + int(end - begin) > max_candidates) continue;
-              runs[run_count++] = {b, begin, number};
-              for (std::uint32_t i = begin; i < end; i += 4) {
-                const vfour dx = load4(block.x + i) - x, dy = load4(block.y + i) - y, dz = load4(block.z + i) - z;
-                *reinterpret_cast<vfour*>(squared + number + (i - begin)) = dx * dx + dy * dy + dz * dz;
-              }
-              number += int(end - begin);
+          const float x = qx[q] - map.voxel_m * float(8 * (first_key[0] + bx) - anchor[0]);
+          const float y = qy[q] - map.voxel_m * float(8 * (first_key[1] + by) - anchor[1]);
+          const float z = qz[q] - map.voxel_m * float(8 * (first_key[2] + bz) - anchor[2]);
+          const Voxels in_x(bx, inside[0]), in_y(by, inside[1]), in_z(bz, inside[2]);
+          const float left = map.voxel_m * float(in_x.first), right = map.voxel_m * float(in_x.last + 1);
+          const std::int32_t numbered = (bx + 2 * by + 4 * bz) << 16;
+          for (int layer = 64 * in_z.first; layer <= 64 * in_z.last; layer += 64) {
+            const std::int32_t begin = block.begin[layer + 8 * in_y.first + in_x.first], end = block.begin[layer + 8 * in_y.last + in_x.last + 1];
+            for (std::int32_t i = begin; i < end; i += LANES) {
+              const vfloat px = load(block.x + i), dx = px - x, dy = load(block.y + i) - y, dz = load(block.z + i) - z;
+              const vint entries = lane_numbers() + i;
+              const vint in_reach = (entries < end) & (px >= left) & (px < right);
+              least.add(in_reach ? dx * dx + dy * dy + dz * dz : all(far), entries | numbered);
             }
+          }
         }
-    float first = far, second = far;
-    int winner = -1;
-    for (int c = 0; c < number; ++c) {
-      const float d = squared[c];
-      const bool closer = d < first;
-      const float loser = closer ? first : d;
-      second = loser < second ? loser : second;
-      first = closer ? d : first;
-      winner = closer ? c : winner;
-    }
-    out.squared[q] = first;
-    out.second_squared[q] = second;
-    out.block[q] = 0xffffffffu;
-    for (int r = run_count - 1; r >= 0 && winner >= 0; --r) {
-      if (winner < runs[r].number) continue;
-      out.block[q] = runs[r].block;
-      out.entry[q] = runs[r].begin + std::uint32_t(winner - runs[r].number);
-      break;
+    const LeastOfFour nearest = least_of_all(least);
+    out.squared[q] = nearest.first[0];
+    out.second_squared[q] = nearest.second[0];
+    const std::int32_t number = nearest.number[0];
+    out.block[q] = nearest.first[0] < far ? blocks.known(number >> 16) : 0xffffffffu;
+    out.entry[q] = std::uint32_t(number & 0xffff);
+  }
+}
+
+std::size_t find_moved(const float* x, const float* y, const float* z, const float* from_x, const float* from_y, const float* from_z, const float* bound2,
+                       std::size_t padded, std::uint32_t* which) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < padded; i += LANES) {
+    const vfloat dx = load(x + i) - load(from_x + i), dy = load(y + i) - load(from_y + i), dz = load(z + i) - load(from_z + i);
+    const vint moved = dx * dx + dy * dy + dz * dz > load(bound2 + i);
+    for (int l = 0; l < LANES; ++l) {
+      which[count] = std::uint32_t(i) + std::uint32_t(l);
+      count -= std::size_t(std::ptrdiff_t(moved[l]));
     }
   }
+  return count;
 }
 
 /// The residual of LANES correspondences from `i` on.
@@ -209,6 +270,6 @@ void accumulate(const Pose& pose, const Source& source, const Correspondences& c
 }  // namespace
 
 extern const Table TABLE;
-const Table TABLE = {transform, find_nearest, whitened, accumulate};
+const Table TABLE = {transform, find_moved, find_nearest, whitened, accumulate};
 
 }  // namespace priormap::kernels

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <priormap/core/error.hpp>
 #include <priormap/core/symmetric.hpp>
 #include <priormap/registration/register_joint.hpp>
@@ -95,7 +96,9 @@ class TargetState {
     count_ = count;
     for (auto& column : columns_) column.assign(padded, 0.0f);
     std::fill(columns_[variance].begin(), columns_[variance].end(), 1.0f);
-    gap2_.assign(count, -1.0f);
+    gap2_.assign(padded, std::numeric_limits<float>::max());
+    std::fill_n(gap2_.begin(), count, -1.0f);
+    moved_.resize(padded + 1);
     for (auto* indices : {&block_, &entry_}) indices->resize(count);
     for (auto* squares : {&squared_, &second_squared_}) squares->resize(count);
   }
@@ -140,7 +143,7 @@ class TargetState {
     const Eigen::Isometry3d T = target_.T_target_map * T_map_scan;
     const kernels::Pose pose = kernel_pose(T, view_->corner(anchor_));
     table.transform(pose, source, data(x), data(y), data(z));
-    std::fill(gap2_.begin(), gap2_.end(), -1.0f);
+    std::fill_n(gap2_.begin(), count_, -1.0f);
     search(table, options);
     table.whitened(pose, source, correspondences(), data(x), data(y), data(z), data(whitened));
     const double width2 = options.kernel_width * options.kernel_width;
@@ -160,31 +163,43 @@ class TargetState {
   }
 
   void search(const kernels::Table& table, const JointOptions& options) {
-    moved_.clear();
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      const float dx = columns_[x][i] - columns_[searched_x][i], dy = columns_[y][i] - columns_[searched_y][i],
-                  dz = columns_[z][i] - columns_[searched_z][i];
-      if (dx * dx + dy * dy + dz * dz > gap2_[i]) moved_.push_back(i);
-    }
-    table.find_nearest(view_->kernel_view(), anchor_.data(), data(x), data(y), data(z), moved_.data(), moved_.size(),
+    const std::size_t count = table.find_moved(data(x), data(y), data(z), data(searched_x), data(searched_y), data(searched_z), gap2_.data(), gap2_.size(), moved_.data());
+    table.find_nearest(view_->kernel_view(), anchor_.data(), data(x), data(y), data(z), moved_.data(), count,
                        {block_.data(), entry_.data(), squared_.data(), second_squared_.data()});
-    for (const std::uint32_t i : moved_) keep(i, options);
+    for (const std::uint32_t i : std::span(moved_).first(count)) keep(i, float(options.max_distance_m));
   }
 
-  void keep(std::uint32_t i, const JointOptions& options) {
+  /// How far surfel `i` may move within the voxel that it lies in now: so far the 27 voxels around it stay the same.
+  float way_within_voxel(std::uint32_t i) const {
+    constexpr float rounding_m = 1e-4f;
+    const float voxel_m = view_->kernel_view().voxel_m;
+    float least = voxel_m;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const float p = columns_[std::size_t(x) + a][i] / voxel_m, to_edge = p - float(std::int32_t(p));   // of the voxel, from its lower or from its upper one
+      least = std::min({least, std::abs(to_edge) * voxel_m, (1 - std::abs(to_edge)) * voxel_m});
+    }
+    return least - rounding_m;
+  }
+
+  /// How far surfel `i` may move before another one may be the nearest.
+  float way_to_change(std::uint32_t i, bool found, float max_distance_m) const {
+    if (block_[i] == VoxelIndex::none) return way_within_voxel(i);
+    const float first = std::sqrt(squared_[i]), second = std::sqrt(second_squared_[i]);
+    if (!found) return std::min(way_within_voxel(i), first - max_distance_m);
+    // What lies outside the 27 voxels is at least a voxel away.
+    const float anywhere = 0.5f * (std::min(second, view_->kernel_view().voxel_m) - first);
+    return std::max(anywhere, std::min({way_within_voxel(i), 0.5f * (second - first), max_distance_m - first}));
+  }
+
+  void keep(std::uint32_t i, float max_distance_m) {
     for (int a = 0; a < 3; ++a) columns_[std::size_t(searched_x + a)][i] = columns_[std::size_t(x + a)][i];
-    const bool found = block_[i] != VoxelIndex::none && double(squared_[i]) <= options.max_distance_m * options.max_distance_m;
+    const bool found = block_[i] != VoxelIndex::none && squared_[i] <= max_distance_m * max_distance_m;
+    const float way = way_to_change(i, found, max_distance_m);
+    gap2_[i] = way > 0 ? way * way : -1.0f;
     const SurfelShape shape = found ? view_->shape(block_[i], entry_[i]) : SurfelShape{};
     columns_[isotropic][i] = shape.isotropic;
     columns_[directed][i] = shape.directed;
-    if (!found) {
-      gap2_[i] = -1.0f;
-      return;
-    }
-    // What lies outside the 27 voxels is at least a voxel away.
-    const float second = std::min(std::sqrt(second_squared_[i]), view_->kernel_view().voxel_m);
-    const float gap = 0.5f * (second - std::sqrt(squared_[i]));
-    gap2_[i] = gap > 0 ? gap * gap : -1.0f;
+    if (!found) return;
     const Eigen::Vector3f mean = view_->mean(block_[i], entry_[i], anchor_);
     for (int a = 0; a < 3; ++a) {
       columns_[std::size_t(mean_x + a)][i] = mean[a];

@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <limits>
 #include <priormap/core/error.hpp>
 #include <priormap/registration/scan_reducer.hpp>
 
@@ -86,37 +86,36 @@ ScanReducer::Cell& ScanReducer::add_cell(std::uint64_t key, std::size_t slot) {
 template <bool timed>
 void ScanReducer::add(const float* xyz, const float* time_s, std::size_t count) {
   constexpr auto limit = float(half_range);
+  constexpr float none = std::numeric_limits<float>::infinity();
+  constexpr vint4 of_position = {-1, -1, -1, 0};
+  constexpr vfloat4 one_behind = {0.0f, 0.0f, 0.0f, 1.0f};
   const float per_metre = 1.0f / voxel_m_;
-  const vfloat4 ones = {1.0f, 1.0f, 1.0f, 1.0f};
-  vint4 last = vint4{} + half_range;  // no point's voxel
-  vfloat4 sums[3];
-  vfloat4* place = nullptr;  // of the sums
-  const auto put_down = [&] {
-    if (place) std::copy(sums, sums + 3, place);
-  };
+  vfloat4 low = vfloat4{} + none, high = low, centre = {};  // of the voxel: none yet; in voxels, in metres
+  vfloat4 nowhere[3] = {}, *place = nowhere;                // of its sums
+  vfloat4 first = {}, second = {}, third = {};
   for (const float* const end = xyz + 3 * count; xyz != end; xyz += 3, time_s += timed) {
     const vfloat4 p = *reinterpret_cast<const vfloat4*>(xyz);
     const vfloat4 v = p * per_metre;
-    const vint4 inside = (v > -limit) & (v < limit);  // false when not a number
-    const vint4 truncated = __builtin_convertvector(v, vint4);
-    const vint4 voxel = truncated + (v < __builtin_convertvector(truncated, vfloat4));  // the floor: true is -1
-    const vint4 changed = (voxel ^ last) | ~inside;
-    if (any_of_three(changed)) {
-      if (any_of_three(~inside)) continue;
-      put_down();
+    const vint4 stays = (v >= low) & (v < high);
+    if (any_of_three(~stays)) {
+      if (any_of_three(~((v > -limit) & (v < limit)))) continue;  // also what is not a number
+      const vint4 truncated = __builtin_convertvector(v, vint4);
+      const vint4 voxel = truncated + (v < __builtin_convertvector(truncated, vfloat4));  // the floor: true is -1
+      low = __builtin_convertvector(voxel, vfloat4);
+      high = low + 1.0f;
+      centre = (low + 0.5f) * voxel_m_;
+      place[0] = first, place[1] = second, place[2] = third;
       place = reinterpret_cast<vfloat4*>(cell_of(key_of(voxel[0], voxel[1], voxel[2])).sums);
-      std::copy(place, place + 3, sums);
-      last = voxel;
+      first = place[0], second = place[1], third = place[2];
     }
-    const vfloat4 r = p - (__builtin_convertvector(voxel, vfloat4) + 0.5f) * voxel_m_;
-    const vfloat4 with_one = __builtin_shufflevector(r, ones, 0, 1, 2, 7);
-    sums[0] += with_one;
-    sums[1] += __builtin_shufflevector(r, r, 0, 0, 0, 1) * __builtin_shufflevector(r, r, 0, 1, 2, 1);
-    vfloat4 third = __builtin_shufflevector(r, ones, 1, 2, 4, 4) * __builtin_shufflevector(r, ones, 2, 2, 4, 4);
-    if constexpr (timed) third[2] = *time_s;
-    sums[2] += third;
+    const vfloat4 r = p - centre;
+    first += reinterpret_cast<vfloat4>((reinterpret_cast<vint4>(r) & of_position) | reinterpret_cast<vint4>(one_behind));
+    second += __builtin_shufflevector(r, r, 0, 0, 0, 1) * __builtin_shufflevector(r, r, 0, 1, 2, 1);
+    vfloat4 rest = __builtin_shufflevector(r, r, 1, 2, 2, 2) * __builtin_shufflevector(r, r, 2, 2, 2, 2);
+    if constexpr (timed) rest[2] = *time_s;
+    third += rest;
   }
-  put_down();
+  place[0] = first, place[1] = second, place[2] = third;
 }
 
 SurfelCloud ScanReducer::reduce(const PointCloud& scan) {
