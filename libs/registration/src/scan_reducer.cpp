@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 #include <priormap/core/error.hpp>
 #include <priormap/registration/scan_reducer.hpp>
@@ -6,7 +7,7 @@ namespace priormap {
 namespace {
 
 constexpr std::int32_t half_range = 1 << 20;  // voxels: 21 bits an axis
-constexpr std::uint64_t no_key = ~std::uint64_t(0);
+constexpr std::uint32_t no_cell = 0xffffffffu;
 
 std::size_t hash_of(std::uint64_t key) { return (key * 0x9e3779b97f4a7c15u) >> 32; }
 
@@ -46,40 +47,28 @@ Surfel surfel_of(const float* sums, const Eigen::Vector3f& centre, bool timed) {
 
 ScanReducer::ScanReducer(double voxel_m) : voxel_m_(float(voxel_m)) {
   if (!(voxel_m > 0)) throw UsageError("scan reduction: the voxel must be above 0 m");
-  table_.assign(16384, Cell{{}, no_key});
+  slots_.resize(16384);
 }
 
-void ScanReducer::clear() {
-  for (const std::uint32_t slot : used_) table_[slot] = Cell{{}, no_key};
-  used_.clear();
+std::size_t ScanReducer::slot_of(std::uint64_t key) const {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = hash_of(key) & mask;
+  while (slots_[slot] != no_cell && cells_[slots_[slot]].key != key) slot = (slot + 1) & mask;
+  return slot;
 }
 
 ScanReducer::Cell& ScanReducer::cell_of(std::uint64_t key) {
-  const std::size_t mask = table_.size() - 1;
-  std::size_t slot = hash_of(key) & mask;
-  while (table_[slot].key != key) {
-    if (table_[slot].key == no_key) return add_cell(key, slot);
-    slot = (slot + 1) & mask;
-  }
-  return table_[slot];
+  const std::size_t slot = slot_of(key);
+  if (slots_[slot] != no_cell) return cells_[slots_[slot]];
+  slots_[slot] = std::uint32_t(cells_.size());
+  cells_.push_back({{}, key});
+  if (2 * cells_.size() > slots_.size()) grow();
+  return cells_.back();
 }
 
-ScanReducer::Cell& ScanReducer::add_cell(std::uint64_t key, std::size_t slot) {
-  if (2 * used_.size() < table_.size()) {
-    used_.push_back(std::uint32_t(slot));
-    table_[slot].key = key;
-    return table_[slot];
-  }
-  std::vector<Cell> old(2 * table_.size(), Cell{{}, no_key});
-  old.swap(table_);
-  const std::size_t mask = table_.size() - 1;
-  for (std::uint32_t& used : used_) {
-    std::size_t place = hash_of(old[used].key) & mask;
-    while (table_[place].key != no_key) place = (place + 1) & mask;
-    table_[place] = old[used];
-    used = std::uint32_t(place);
-  }
-  return cell_of(key);
+void ScanReducer::grow() {
+  slots_.assign(2 * slots_.size(), no_cell);
+  for (std::uint32_t i = 0; i < cells_.size(); ++i) slots_[slot_of(cells_[i].key)] = i;
 }
 
 /// Adds `count` points; the float after the last one must be readable. Sums stay in registers as long as points fall into one voxel, as neighbours on a ring do.
@@ -119,7 +108,8 @@ void ScanReducer::add(const float* xyz, const float* time_s, std::size_t count) 
 }
 
 SurfelCloud ScanReducer::reduce(const PointCloud& scan) {
-  clear();
+  cells_.clear();
+  std::fill(slots_.begin(), slots_.end(), no_cell);
   static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
   const bool timed = !scan.empty() && scan.time_s.size() == scan.size();
   if (!scan.empty()) {
@@ -130,8 +120,8 @@ SurfelCloud ScanReducer::reduce(const PointCloud& scan) {
   }
   SurfelCloud out;
   out.origin = scan.origin;
-  out.surfels.reserve(used_.size());
-  for (const std::uint32_t slot : used_) out.surfels.push_back(surfel_of(table_[slot].sums, voxel_m_ * centre_of(table_[slot].key), timed));
+  out.surfels.reserve(cells_.size());
+  for (const Cell& cell : cells_) out.surfels.push_back(surfel_of(cell.sums, voxel_m_ * centre_of(cell.key), timed));
   return out;
 }
 

@@ -16,20 +16,20 @@ class ScanReducer {
   SurfelCloud reduce(const PointCloud& scan);
 
  private:
-  /// One cache line: sums of the points of a voxel, relative to its centre.
+  /// Of a voxel, one cache line: sums of its points, relative to its centre.
   struct alignas(64) Cell {
     float sums[12];  // x, y, z, count, xx, xy, xz, yy, yz, zz, time, unused
     std::uint64_t key;
   };
   Cell& cell_of(std::uint64_t key);
-  Cell& add_cell(std::uint64_t key, std::size_t slot);
+  std::size_t slot_of(std::uint64_t key) const;
+  void grow();
   template <bool timed>
   void add(const float* xyz, const float* time_s, std::size_t count);
-  void clear();
 
   float voxel_m_;
-  std::vector<Cell> table_;          // open addressing
-  std::vector<std::uint32_t> used_;  // slots in order of first sight
+  std::vector<Cell> cells_;           // in order of first sight
+  std::vector<std::uint32_t> slots_;  // numbers of cells, open addressing
 };
 
 }  // namespace priormap
