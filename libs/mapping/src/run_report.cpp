@@ -23,14 +23,18 @@ Json configuration(const RunFacts& facts) {
   return json;
 }
 
-Json frame(const Start& start) {
+/// Where no prior holds a pose, the first one is exact by definition: it makes the frame.
+std::string sigmas_from(const std::vector<MappedScan>& scans) { return scans.front().covariance.isZero() ? "first-pose" : "prior"; }
+
+Json frame(const Start& start, const std::vector<MappedScan>& scans) {
   const MapFrame& f = start.frame;
-  if (!f.georeferenced()) return {{"georeferenced", false}, {"crs", nullptr}};
+  if (!f.georeferenced()) return {{"georeferenced", false}, {"crs", nullptr}, {"sigmas_from", sigmas_from(scans)}};
   const Eigen::Vector3d first = start.T_map_sensor.translation();
   const GeoPoint origin = f.origin();
   constexpr double deg = 180 / std::numbers::pi;
   return {{"georeferenced", true},
           {"crs", start.crs->name()},
+          {"sigmas_from", sigmas_from(scans)},
           {"vertical", start.crs->has_vertical() ? Json(start.crs->vertical()->name()) : Json()},
           {"definition", f.definition()},
           {"origin", {{"lon_deg", origin.lon_deg}, {"lat_deg", origin.lat_deg}, {"ellipsoidal_height_m", origin.height_m}}},
@@ -93,7 +97,7 @@ void write_run_report(const std::filesystem::path& file, const RunFacts& facts) 
   const Json report = {{"generator", generator()},
                        {"configuration", configuration(facts)},
                        {"inputs", inputs_of(facts.options, facts.source, facts.range, facts.prior)},
-                       {"frame", frame(facts.start)},
+                       {"frame", frame(facts.start, facts.scans)},
                        {"totals", totals(facts)},
                        {"scans", rows}};
   OutputFile out(file);

@@ -4,6 +4,7 @@ succeeds mapper --scans drive --prior drive/prior.ply --prior-crs EPSG:25832+783
   --initial-pose 640000.3,5359000.2,491.8,0,0,0,1 --preset paper -o out
 expect_in stdout "6 anchored"
 expect_in out/run.json '"crs": "EPSG:25832+7837"'
+expect_in out/run.json '"sigmas_from": "prior"'
 expect_in out/map/prior.json 'EPSG:25832+7837'
 expect_in out/trajectory.geojson '"LineString"'
 # UTM metres are not metres: 0.9998 of the drive's 6 m is a millimetre, so the true poses hold within the matching's error.

@@ -7,6 +7,9 @@ done
 expect_absent out/trajectory.geojson
 expect_in stdout "6 outside the prior"
 expect_in out/run.json '"georeferenced": false'
+expect_in out/run.json '"sigmas_from": "first-pose"'
+[ "$(sed -n 2p out/trajectory.csv | cut -d, -f12-17)" = 0.0000,0.0000,0.0000,0.0000,0.0000,0.0000 ] || die "the first pose is exact by definition"
+awk -F, 'NR > 2 && !($12 > 0 && $17 > 0) { exit 1 }' out/trajectory.csv || die "a pose after the first is not"
 head -1 out/poses_kitti.txt | grep -q "^1.0000000000 0.0000000000 0.0000000000 0.000000 " || die "the first pose is not the origin"
 # One scan is a recording, too; a part of one as well.
 succeeds mapper --scans drive/velodyne/000002.bin --no-map -o one
