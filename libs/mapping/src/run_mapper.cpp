@@ -46,7 +46,7 @@ ScanRange range_of(const ScanSource& source, const RunOptions& options) {
 Scan first_scan(const ScanSource& source, std::size_t index) {
   Scan scan = source.read(index);
   if (scan.points.empty())
-    throw FormatError(source.file(index), "the scan holds no points" + std::string(scan.num_skipped ? " that are finite" : "") + "; begin at a later one with --start");
+    throw FormatError(source.file(index), "the scan holds no points" + std::string(scan.num_skipped ? " of use (finite, within 10 km of the sensor)" : "") + "; begin at a later one with --start");
   return scan;
 }
 
@@ -105,7 +105,7 @@ void warn_of_empty_scans(const std::vector<MappedScan>& scans, const ScanSource&
   const auto is_empty = [](const MappedScan& scan) { return scan.num_points == 0; };
   const auto first = std::find_if(scans.begin(), scans.end(), is_empty);
   if (first == scans.end()) return;
-  events.warn("scans that hold no points: " + std::to_string(std::count_if(first, scans.end(), is_empty)) + ", the first is " + source.file(first->index).string() +
+  events.warn("scans that hold no points of use (finite, within 10 km of the sensor): " + std::to_string(std::count_if(first, scans.end(), is_empty)) + ", the first is " + source.file(first->index).string() +
               "; the motion was carried on there");
 }
 

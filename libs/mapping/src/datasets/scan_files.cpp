@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <limits>
 #include <numbers>
 
 #include <priormap/core/error.hpp>
@@ -18,6 +17,8 @@ namespace fs = std::filesystem;
 
 /// Closer to the sensor than this no lidar measures: the return of its own housing, or a zero that stands for "no return".
 constexpr float min_range_m = 0.1f;
+/// Nor farther away. A file most of whose points lie there is no scan: other data, or a cloud in the coordinates of a map.
+constexpr float max_range_m = 1e4f;
 
 std::vector<float> read_point_times(const fs::path& file, std::size_t count) {
   const auto bytes = read_bytes(file);
@@ -56,19 +57,21 @@ void check_span(const std::vector<float>& times_s, const fs::path& file) {
                                 " s from the stamp, longer than a sweep lasts: their unit is not known; leave them out with --point-times none, or give a folder of times");
 }
 
-bool is_measurement(const Eigen::Vector3f& p) { return p.allFinite() && p.squaredNorm() > min_range_m * min_range_m; }
+/// False where it is not finite.
+bool is_measurement(const Eigen::Vector3f& p) {
+  const float range2 = p.squaredNorm();
+  return (range2 > min_range_m * min_range_m) & (range2 <= max_range_m * max_range_m);
+}
+bool is_too_far(const Eigen::Vector3f& p) { return p.allFinite() && p.squaredNorm() > max_range_m * max_range_m; }
 
 /// Without a branch a point: in most scans each is a measurement.
 bool all_are_measurements(const std::vector<Eigen::Vector3f>& points) {
   std::size_t count = 0;
-  for (const Eigen::Vector3f& p : points) {
-    const float range2 = p.squaredNorm();
-    count += (range2 > min_range_m * min_range_m) & (range2 <= std::numeric_limits<float>::max());
-  }
+  for (const Eigen::Vector3f& p : points) count += is_measurement(p);
   return count == points.size();
 }
 
-/// Points that are no return, or of which nobody knows when within the sweep they were seen.
+/// Points that are no return, or of which nobody knows when within the sweep they were seen; all points of what is no scan.
 std::size_t drop_non_measurements(PointCloud& cloud) {
   const bool timed = !cloud.time_s.empty();
   if (!timed && all_are_measurements(cloud.xyz)) return 0;
@@ -76,6 +79,7 @@ std::size_t drop_non_measurements(PointCloud& cloud) {
   kept.reserve(cloud.size());
   for (std::uint32_t i = 0; i < cloud.size(); ++i)
     if (is_measurement(cloud.xyz[i]) && (!timed || std::isfinite(cloud.time_s[i]))) kept.push_back(i);
+  if (const auto num_too_far = std::ranges::count_if(cloud.xyz, is_too_far); std::size_t(num_too_far) > kept.size()) kept.clear();
   const std::size_t dropped = cloud.size() - kept.size();
   if (dropped) cloud = cloud.select(kept);
   return dropped;

@@ -7,7 +7,7 @@
 namespace priormap {
 
 /// One sweep of the sensor: points in the sensor frame (x forward, y left, z up), as the sensor gave them but for points that are no
-/// measurement (NaN, infinite, or at the sensor itself), which are left out and counted.
+/// measurement (NaN, infinite, at the sensor itself, or beyond 10 km), which are left out and counted.
 struct Scan {
   std::size_t index = 0;          ///< in its source
   double stamp_s = 0;
