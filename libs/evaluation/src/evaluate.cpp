@@ -12,6 +12,8 @@
 #include <priormap/geodesy/crs.hpp>
 #include <priormap/geodesy/transformer.hpp>
 
+#include "turned_frames.hpp"
+
 namespace priormap {
 namespace {
 
@@ -84,6 +86,7 @@ TrajectoryEvaluation evaluate_trajectory(Trajectory reference, Trajectory estima
   to_common_frame(reference, estimate);
   keep_pairs(reference, estimate, options.max_time_diff_s);
   if (options.align == Alignment::none) require_a_common_place(reference, estimate, stated_reference, stated_estimate);
+  if (options.align == Alignment::none) warn_of_turned_frames(reference, estimate, events);
   evaluation.pairs = reference.size();
   if (evaluation.pairs < evaluation.estimate_poses)
     events.warn(std::to_string(evaluation.estimate_poses - evaluation.pairs) + " of " + std::to_string(evaluation.estimate_poses) +

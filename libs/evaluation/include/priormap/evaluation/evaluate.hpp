@@ -35,7 +35,7 @@ struct TrajectoryEvaluation {
 };
 
 /// Compares an estimate with a reference: common frame, association, alignment, then the three measures.
-/// Warns when poses stay without a partner.
+/// Warns when poses stay without a partner, and when nothing is aligned though a turn would make the error far smaller.
 /// @throws CrsError as to_common_frame, and when one side is georeferenced, the other is not and nothing is aligned;
 /// FormatError when one side holds no poses, when no pose has a partner, when nothing is aligned and the two stay farther apart than the reference's way and 1 km, or as find_alignment.
 TrajectoryEvaluation evaluate_trajectory(Trajectory reference, Trajectory estimate, const EvaluationOptions& options, const Events& events);
