@@ -82,19 +82,29 @@ std::string readable_distance(double distance_m) {
   return text;
 }
 
-void check_near(const PriorPoints& prior, const Eigen::Vector3d& place, double radius_m) {
-  const double distance_m = distance_to_prior_m(prior, place);
-  if (!(distance_m <= radius_m))
-    throw Error("prior and scans are in different places: the initial pose is " + readable_distance(distance_m) + " from the nearest tile of " +
-                prior.identity().name + "; check --initial-pose or --initial-lonlat, or start later with --start");
+bool is_near(const PriorPoints& prior, const Eigen::Vector3d& place, double radius_m) { return place.allFinite() && distance_to_prior_m(prior, place) <= radius_m; }
+
+/// The place that two numbers mean when they are taken in the other order.
+struct Swapped {
+  Eigen::Vector3d place;
+  std::string remedy;
+};
+
+void check_near(const PriorPoints& prior, const Eigen::Vector3d& place, double radius_m, const Swapped& swapped) {
+  if (is_near(prior, place, radius_m)) return;
+  const std::string usual_remedy = "check --initial-pose or --initial-lonlat, or start later with --start";
+  throw Error("prior and scans are in different places: the initial pose is " + (place.allFinite() ? readable_distance(distance_to_prior_m(prior, place)) : "out of reach") +
+              " from the nearest tile of " + prior.identity().name + "; " + (is_near(prior, swapped.place, radius_m) ? swapped.remedy : usual_remedy));
 }
 
 Start start_at_lon_lat(const InitialPose& initial, const PriorPoints* prior, const PointCloud& first_scan, double prior_radius_m) {
   const double lon = initial.lon_lat_deg[0], lat = initial.lon_lat_deg[1];
   const Crs crs = prior ? *prior->crs() : Crs::utm_zone(lon, lat);
-  Eigen::Vector3d place = Transformer(Crs::parse("EPSG:4326"), crs.horizontal()).forward(Eigen::Vector3d(lon, lat, 0));
+  const Transformer from_lon_lat(Crs::parse("EPSG:4326"), crs.horizontal());
+  Eigen::Vector3d place = from_lon_lat.forward(Eigen::Vector3d(lon, lat, 0));
+  const Swapped swapped{from_lon_lat.forward(Eigen::Vector3d(lat, lon, 0)), "swap the numbers of --initial-lonlat: it takes the longitude first"};
+  if (prior) check_near(*prior, place, prior_radius_m, swapped);
   if (!place.allFinite()) throw CrsError("--initial-lonlat lies outside the area of " + crs.name());
-  if (prior) check_near(*prior, place, prior_radius_m);
   const double ground = initial.height_m || !prior ? 0 : prior_ground(*prior, place) * crs.vertical_unit_m();
   place.z() = initial.height_m ? *initial.height_m : prior ? ground - ground_below_sensor(first_scan) : 0;
 
@@ -108,7 +118,8 @@ Start start_at_lon_lat(const InitialPose& initial, const PriorPoints* prior, con
 
 Start start_at_pose(const InitialPose& initial, const PriorPoints* prior, double prior_radius_m) {
   const Eigen::Isometry3d T = initial.pose.empty() ? Eigen::Isometry3d::Identity() : pose_of(initial.pose);
-  if (prior) check_near(*prior, T.translation(), prior_radius_m);
+  const Swapped swapped{{T.translation().y(), T.translation().x(), T.translation().z()}, "swap the first two numbers of --initial-pose: it takes the easting first"};
+  if (prior) check_near(*prior, T.translation(), prior_radius_m, swapped);
   if (!prior || !prior->crs()) return {MapFrame::local(), std::nullopt, T};
   const MapFrame frame = MapFrame::at(*prior->crs(), T.translation());
   return {frame, prior->crs(), frame.pose_to_map(T)};
