@@ -198,4 +198,17 @@ void points_of_grid(const PointGrid& grid, const std::optional<StepWalls>& walls
   if (!points.empty()) visit(points);
 }
 
+void walls_of_grid(const PointGrid& grid, const StepWalls& walls, const Bounds2& area, const LasPoint& common, const std::function<void(std::vector<LasPoint>& points)>& visit) {
+  if (grid.lines < 3 || grid.length < 3) return;
+  std::vector<LasPoint> points;
+  const LatticeArea lattice(area);
+  WallBuilder builder(grid, walls, lattice, common, points);
+  for (std::size_t line = grid.length; line + grid.length < grid.size(); line += grid.length)
+    for (std::size_t place = line + 1; place + 1 < line + grid.length; ++place) {
+      if (builder.is_to_place_before(place)) builder.add_to_place_before(place);
+      if (builder.is_to_next_line(place)) builder.add_to_next_line(place);
+    }
+  if (!points.empty()) visit(points);
+}
+
 }  // namespace priormap

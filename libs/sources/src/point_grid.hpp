@@ -35,5 +35,7 @@ struct StepWalls {
 /// @param common  the other columns
 void points_of_grid(const PointGrid& grid, const std::optional<StepWalls>& walls, const Bounds2& area, const LasPoint& common,
                     const std::function<void(std::vector<LasPoint>& points)>& visit);
+/// The points of walls alone.
+void walls_of_grid(const PointGrid& grid, const StepWalls& walls, const Bounds2& area, const LasPoint& common, const std::function<void(std::vector<LasPoint>& points)>& visit);
 
 }  // namespace priormap

@@ -68,12 +68,12 @@ std::optional<Bounds2> target_bounds(const RasterFacts& facts, double target_cel
   return Bounds2{known.min().x(), known.min().y(), known.max().x(), known.max().y()};
 }
 
-/// Walls of heights that are near enough to each other to tell where they stand, and none of them interpolated. @param cell_size, spacing  of the raster and of its samples, in the unit of the target CRS
-std::optional<StepWalls> step_walls(const Crs& target, double cell_size, double spacing, const std::optional<double>& least_wall_m) {
-  constexpr double coarsest_m = 2.5, greatest_rise_m = 1, hair = 1e-3;
-  const double spacing_m = spacing * target.horizontal_unit_m(), unit_m = std::abs(target.vertical_unit_m());
-  if (!least_wall_m || spacing_m > coarsest_m || spacing < (1 - hair) * cell_size) return std::nullopt;   // between its cells a raster has slopes, no steps
-  return StepWalls{std::max(*least_wall_m, spacing_m) / unit_m, std::min(spacing_m, greatest_rise_m) / unit_m};
+/// Walls of cells that are near enough to each other to tell where they stand. @param cell_size  of the raster, in the unit of the target CRS
+std::optional<StepWalls> step_walls(const Crs& target, double cell_size, const std::optional<double>& least_wall_m) {
+  constexpr double coarsest_m = 2.5, greatest_rise_m = 1;
+  const double cell_m = cell_size * target.horizontal_unit_m(), unit_m = std::abs(target.vertical_unit_m());
+  if (!least_wall_m || cell_m > coarsest_m) return std::nullopt;
+  return StepWalls{std::max(*least_wall_m, cell_m) / unit_m, std::min(cell_m, greatest_rise_m) / unit_m};
 }
 
 /// The raster's own cell centres.
@@ -87,16 +87,10 @@ class CellSampling {
   double cell_size() const { return cell_size_; }
 
   void read(const Bounds2& area, const LasPoint& common, const RasterPoints::Visit& visit) {
-    const CellWindow window = window_over(area);
-    if (window.width <= 0 || window.height <= 0) return;
-    held_ = grown(window);
-    heights_.resize(static_cast<std::size_t>(held_.width) * static_cast<std::size_t>(held_.height));
-    raster_.read(held_, heights_);
-    for_each_patch(window, [&](const CellWindow& patch, const CellWindow& part) {
-      fill_grid(part);
-      if (!is_identity()) transform_grid(patch);
-      points_of_grid(grid_, walls_, area, common, visit);
-    });
+    for_each_grid(area, [&] { points_of_grid(grid_, walls_, area, common, visit); });
+  }
+  void read_walls(const Bounds2& area, const LasPoint& common, const RasterPoints::Visit& visit) {
+    if (walls_) for_each_grid(area, [&] { walls_of_grid(grid_, *walls_, area, common, visit); });
   }
 
  private:
@@ -111,7 +105,7 @@ class CellSampling {
     patch_width_ = is_identity() ? stripe_width : most_patch;
     patch_height_ = is_identity() ? grid_edge : most_patch;
     bounds_ = target_bounds(facts, cell_size_, transformer_);
-    walls_ = step_walls(target, cell_size_, cell_size_, least_wall_m);
+    walls_ = step_walls(target, cell_size_, least_wall_m);
   }
 
   bool is_identity() const { return transformer_.exact().is_identity(); }
@@ -138,6 +132,21 @@ class CellSampling {
     const auto last = [&](double v, int size) { return static_cast<int>(std::clamp(std::floor(v - 0.5 + hair) + 1, 0.0, static_cast<double>(size))); };
     const int col = first(cells.min().x(), raster_.facts().width), row = first(cells.min().y(), raster_.facts().height);
     return {col, row, last(cells.max().x(), raster_.facts().width) - col, last(cells.max().y(), raster_.facts().height) - row};
+  }
+
+  /// Calls use() for each part of an area, with the part's cells in grid_.
+  template <class Use>
+  void for_each_grid(const Bounds2& area, const Use& use) {
+    const CellWindow window = window_over(area);
+    if (window.width <= 0 || window.height <= 0) return;
+    held_ = grown(window);
+    heights_.resize(static_cast<std::size_t>(held_.width) * static_cast<std::size_t>(held_.height));
+    raster_.read(held_, heights_);
+    for_each_patch(window, [&](const CellWindow& patch, const CellWindow& part) {
+      fill_grid(part);
+      if (!is_identity()) transform_grid(patch);
+      use();
+    });
   }
 
   /// Calls visit(patch, its part in the window). Patches of a raster in another CRS do not depend on the window: their normals share an orientation.
@@ -209,17 +218,18 @@ class CellSampling {
   std::vector<Eigen::Vector3d> buffer_;
 };
 
-/// Cells of a square lattice of the target CRS: node (i, j) at ((i + 0.5) s, (j + 0.5) s), so that none lies on the edge of a tile.
+/// Cells of a square lattice of the target CRS: node (i, j) at ((i + 0.5) s, (j + 0.5) s), so that none lies on the edge of a tile. Walls are those of the raster's own cells:
+/// what is interpolated between two of them makes slopes of a step, or two lower steps.
 class LatticeSampling {
  public:
   LatticeSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, double spacing, const std::optional<double>& least_wall_m)
-      : raster_(HeightRaster::open(file, source, target)), transformer_(source, target, area_of(read_raster_facts(file), source)), spacing_(spacing), walls_(step_walls(target, raster_.cell_size(), spacing, least_wall_m)) {
+      : raster_(HeightRaster::open(file, source, target)), cells_(file, source, target, least_wall_m), spacing_(spacing) {
     InterpolatedTransformer horizontal(Transformer(source.horizontal(), target.horizontal()));
     bounds_ = target_bounds(read_raster_facts(file), raster_.cell_size(), horizontal);
   }
 
   const std::optional<Bounds2>& bounds() const { return bounds_; }
-  const CoordinateOperation& operation() const { return transformer_.operation(); }
+  const CoordinateOperation& operation() const { return cells_.operation(); }
   double cell_size() const { return raster_.cell_size(); }
 
   void read(const Bounds2& area, const LasPoint& common, const RasterPoints::Visit& visit) {
@@ -230,9 +240,10 @@ class LatticeSampling {
     for (std::int64_t j = first(std::max(area.min_y, known.min_y)); j < end_j; j += grid_edge) {
       for (std::int64_t i = first(std::max(area.min_x, known.min_x)); i < end_i; i += stripe_width) {
         fill_grid(i, j, std::min<std::int64_t>(stripe_width, end_i - i), std::min<std::int64_t>(grid_edge, end_j - j));
-        points_of_grid(grid_, walls_, area, common, visit);
+        points_of_grid(grid_, std::nullopt, area, common, visit);
       }
     }
+    cells_.read_walls(area, common, visit);
   }
 
  private:
@@ -251,9 +262,8 @@ class LatticeSampling {
   }
 
   HeightRaster raster_;
-  Transformer transformer_;
+  CellSampling cells_;
   double spacing_;
-  std::optional<StepWalls> walls_;
   std::optional<Bounds2> bounds_;
   PointGrid grid_;
 };

@@ -23,7 +23,7 @@ struct RasterPriorOptions {
   template <class Visitor>
   void describe(Visitor& visit) {
     visit("sigma", sigma_m, {"standard deviation of a point; default: sqrt(s^2 + cell^2 / 12), s as the raster states (DTED) or 0.15", "m", 0.001, 65});
-    visit("least-wall", least_wall_m, {"neighbouring cells of a surface of up to 2.5 m that differ by more, and by more than their width, are parted by a wall; 0: no walls. A --spacing finer than the cells has none", "m", 0, 1000});
+    visit("least-wall", least_wall_m, {"neighbouring cells of a surface of up to 2.5 m that differ by more, and by more than their width, are parted by a wall, whatever the --spacing; 0: no walls", "m", 0, 1000});
   }
   /// @throws UsageError for another kind
   void validate() const;

@@ -23,7 +23,7 @@ class RasterPoints {
   /// @param source   of the raster, with a vertical part where its heights are known
   /// @param target   projected
   /// @param least_wall_m  neighbouring cells whose heights differ by more are parted by a wall, one point a cell's edge and at most a metre, halfway between their centres;
-  ///                 none, or cells beyond 2.5 m: no walls. With `spacing` that of the lattice counts, and one finer than the raster's cells has none
+  ///                 none, or cells beyond 2.5 m: no walls. `spacing` does not change them
   /// @param spacing  edge of a square lattice of the target CRS on whose cells' centres heights are interpolated; none: the raster's own
   ///                 cell centres
   /// @throws IoError, FormatError, CrsError as HeightRaster
@@ -37,7 +37,7 @@ class RasterPoints {
 
   using Visit = std::function<void(std::vector<LasPoint>& points)>;
 
-  /// Calls visit(points) with the points inside of `area`, part by part: positions and normals. Where the raster is north-up in the target CRS and the area
+  /// Calls visit(points) with the points inside of `area`, part by part: positions and normals. Where the raster is north-up in the target CRS, without `spacing`, and the area
   /// at most 512 cells high, they come sorted by x, y, z, walls included, from part to part too. Neighbouring areas are best read row by row.
   /// @param area    half-open, in the target CRS, whole thousandths, at most 2000 km wide and high. x and y count from its lower left corner, z is the
   ///                height [0.001 units]
