@@ -1,12 +1,13 @@
 #include <priormap/mapping/map_writer.hpp>
 
+#include <array>
 #include <utility>
 
 #include <priormap/core/parallel.hpp>
 #include <priormap/prior/prior_writer.hpp>
 
+#include "scan_voxels.hpp"
 #include "sweep_motion.hpp"
-#include "voxel_occupancy.hpp"
 
 namespace priormap {
 namespace {
@@ -36,34 +37,23 @@ class LocalProjection {
   Eigen::Matrix3d linear_ = Eigen::Matrix3d::Identity();
 };
 
-/// The points of a scan that may go into the map, in `map` relative to the sensor: one a voxel.
-PointCloud thinned_in_map(Scan scan, const MappedScan& mapped, const MapOptions& options) {
-  PointCloud points;
-  points.origin = mapped.T_map_sensor.translation();
-  const Eigen::Matrix3f R = mapped.T_map_sensor.linear().cast<float>();
+ThinnedScan thinned_in_map(Scan scan, const MappedScan& mapped, const MapOptions& options) {
   if (mapped.motion_undone) undo_motion(scan.points, mapped.velocity);
-  const auto range2 = static_cast<float>(options.range_m * options.range_m);
-  VoxelOccupancy occupied(options.voxel_m);
-  const bool has_intensity = !scan.points.intensity.empty();
-  for (std::size_t i = 0; i < scan.points.size(); ++i) {
-    if (scan.points.xyz[i].squaredNorm() > range2) continue;
-    const Eigen::Vector3f p = R * scan.points.xyz[i];
-    if (!occupied.insert(points.origin + p.cast<double>())) continue;
-    points.xyz.push_back(p);
-    if (has_intensity) points.intensity.push_back(scan.points.intensity[i]);
-  }
-  return points;
+  return thinned_in_map(scan.points, mapped.T_map_sensor, options.voxel_m, options.range_m);
 }
 
-/// Those of them that fall into voxels not seen before, in the prior's CRS.
-PointCloud new_points(const PointCloud& thinned, const LocalProjection& projection, VoxelOccupancy& occupied) {
+/// Those of its points that fall into voxels not seen before, in the prior's CRS.
+PointCloud new_points(const ThinnedScan& thinned, const LocalProjection& projection, VoxelOccupancy& occupied) {
+  std::vector<std::array<std::uint64_t, 8>> free;
+  free.reserve(thinned.blocks.size());
+  for (const VoxelBlock& block : thinned.blocks) free.push_back(occupied.insert(block));
   PointCloud points;
   points.origin = projection.projected_center();
-  for (std::size_t i = 0; i < thinned.size(); ++i) {
-    const Eigen::Vector3d p_map = thinned.position(i);
-    if (!occupied.insert(p_map)) continue;
-    points.xyz.push_back(projection.from_center(p_map).cast<float>());
-    if (!thinned.intensity.empty()) points.intensity.push_back(thinned.intensity[i]);
+  for (std::size_t i = 0; i < thinned.points.size(); ++i) {
+    const std::uint32_t bit = thinned.bits[i];
+    if (!(free[bit >> 9][bit >> 6 & 7] >> (bit & 63) & 1)) continue;
+    points.xyz.push_back(projection.from_center(thinned.points.position(i)).cast<float>());
+    if (!thinned.points.intensity.empty()) points.intensity.push_back(thinned.points.intensity[i]);
   }
   points.classification.assign(points.size(), static_cast<std::uint8_t>(PointClass::unclassified));
   return points;
@@ -75,17 +65,17 @@ PriorManifest write_map(const std::filesystem::path& directory, const ScanSource
                         PriorManifest manifest, const MapOptions& options, int threads, const Events& events) {
   manifest.spacing_m = options.voxel_m;
   PriorWriter writer(directory, std::move(manifest), Overwrite::refuse);
-  VoxelOccupancy occupied(options.voxel_m);
+  VoxelOccupancy occupied;
   const std::size_t window = 2 * static_cast<std::size_t>(threads);
-  std::vector<PointCloud> waiting(scans.size());
+  std::vector<ThinnedScan> waiting(scans.size());
   ordered_pipeline(
       scans.size(), threads, window,
       [&](std::size_t i) { waiting[i] = thinned_in_map(source.read(scans[i].index), scans[i], options); },
       [&](std::size_t i) {
-        const PointCloud thinned = std::exchange(waiting[i], {});
+        const ThinnedScan thinned = std::exchange(waiting[i], {});
         const Eigen::Vector3d center = scans[i].T_map_sensor.translation();
         writer.add(new_points(thinned, LocalProjection(frame, center), occupied));
-        if (occupied.memory_bytes() > occupancy_limit_bytes) occupied.forget_beyond(center, 2 * options.range_m);
+        if (occupied.memory_bytes() > occupancy_limit_bytes) occupied.forget_beyond(center, 2 * options.range_m, options.voxel_m);
         events.advance("writing the map", static_cast<double>(i + 1) / static_cast<double>(scans.size()));
       });
   return writer.finish(threads, events);

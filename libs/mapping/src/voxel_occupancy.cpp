@@ -1,6 +1,6 @@
 #include "voxel_occupancy.hpp"
 
-#include <cmath>
+#include <bit>
 
 namespace priormap {
 namespace {
@@ -13,7 +13,7 @@ std::size_t hash(const Eigen::Vector3i& key) {
 
 }  // namespace
 
-VoxelOccupancy::VoxelOccupancy(double voxel_m) : voxel_m_(voxel_m), slots_(1u << 12, 0) {}
+VoxelOccupancy::VoxelOccupancy(std::size_t expected_blocks) : slots_(std::bit_ceil(2 * expected_blocks), 0) { blocks_.reserve(expected_blocks); }
 
 std::size_t VoxelOccupancy::slot_of(const Eigen::Vector3i& key) const {
   const std::size_t mask = slots_.size() - 1;
@@ -22,9 +22,8 @@ std::size_t VoxelOccupancy::slot_of(const Eigen::Vector3i& key) const {
   return slot;
 }
 
-bool VoxelOccupancy::insert(const Eigen::Vector3d& p) {
-  const Eigen::Vector3i voxel = (p / voxel_m_).array().floor().cast<int>();
-  const Eigen::Vector3i key = voxel.unaryExpr([](int v) { return v >> 3; });
+std::uint32_t VoxelOccupancy::number_of(const Eigen::Vector3i& key) {
+  if (last_ < blocks_.size() && blocks_[last_].key == key) return last_;
   std::size_t slot = slot_of(key);
   if (slots_[slot] == 0) {
     if (2 * (blocks_.size() + 1) > slots_.size()) {
@@ -34,18 +33,33 @@ bool VoxelOccupancy::insert(const Eigen::Vector3d& p) {
     blocks_.push_back({key, {}});
     slots_[slot] = static_cast<std::uint32_t>(blocks_.size());
   }
-  std::uint64_t& word = blocks_[slots_[slot] - 1].bits[static_cast<std::size_t>(voxel.z() & 7)];
-  const std::uint64_t bit = std::uint64_t{1} << ((voxel.y() & 7) * 8 + (voxel.x() & 7));
-  const bool free = !(word & bit);
-  word |= bit;
+  return last_ = slots_[slot] - 1;
+}
+
+VoxelOccupancy::Place VoxelOccupancy::insert(const Eigen::Vector3i& voxel) {
+  const std::uint32_t number = number_of({voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3});
+  const int bit = (voxel.x() & 7) + 8 * (voxel.y() & 7), layer = voxel.z() & 7;
+  std::uint64_t& word = blocks_[number].bits[static_cast<std::size_t>(layer)];
+  const bool was_free = !(word >> bit & 1);
+  word |= std::uint64_t{1} << bit;
+  return {number, static_cast<std::uint16_t>(bit + 64 * layer), was_free};
+}
+
+std::array<std::uint64_t, 8> VoxelOccupancy::insert(const VoxelBlock& block) {
+  std::array<std::uint64_t, 8>& bits = blocks_[number_of(block.key)].bits;
+  std::array<std::uint64_t, 8> free;
+  for (std::size_t z = 0; z < bits.size(); ++z) {
+    free[z] = block.bits[z] & ~bits[z];
+    bits[z] |= block.bits[z];
+  }
   return free;
 }
 
-std::size_t VoxelOccupancy::memory_bytes() const { return blocks_.capacity() * sizeof(Block) + slots_.capacity() * sizeof(slots_[0]); }
+std::size_t VoxelOccupancy::memory_bytes() const { return blocks_.capacity() * sizeof(VoxelBlock) + slots_.capacity() * sizeof(slots_[0]); }
 
-void VoxelOccupancy::forget_beyond(const Eigen::Vector3d& center, double distance_m) {
-  const double block_m = 8 * voxel_m_;
-  std::erase_if(blocks_, [&](const Block& block) {
+void VoxelOccupancy::forget_beyond(const Eigen::Vector3d& center, double distance_m, double voxel_m) {
+  const double block_m = 8 * voxel_m;
+  std::erase_if(blocks_, [&](const VoxelBlock& block) {
     return ((block.key.cast<double>().array() + 0.5).matrix() * block_m - center).norm() > distance_m;
   });
   rehash(slots_.size());
