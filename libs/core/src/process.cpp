@@ -2,6 +2,7 @@
 
 #include <elf.h>
 #include <link.h>
+#include <malloc.h>
 
 #include <cstring>
 #include <fstream>
@@ -52,6 +53,12 @@ std::uint64_t peak_memory_bytes() {
     if (line.starts_with("RssFile:")) file_kib = std::stoull(line.substr(8));
   }
   return peak_kib > file_kib ? (peak_kib - file_kib) * 1024 : 0;
+}
+
+void return_freed_memory() {
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
 }
 
 std::string build_id() {

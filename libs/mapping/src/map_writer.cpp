@@ -12,7 +12,7 @@
 namespace priormap {
 namespace {
 
-constexpr std::size_t occupancy_limit_bytes = 96u << 20;
+constexpr std::size_t occupancy_limit_bytes = 96u << 20, spool_bytes = 64u << 20;
 
 /// `map` to the prior's CRS around one place. Both are conformal projections: over a scan's range the second order is below a tenth of a millimetre.
 class LocalProjection {
@@ -64,7 +64,7 @@ PointCloud new_points(const ThinnedScan& thinned, const LocalProjection& project
 PriorManifest write_map(const std::filesystem::path& directory, const ScanSource& source, const std::vector<MappedScan>& scans, const MapFrame& frame,
                         PriorManifest manifest, const MapOptions& options, int threads, const Events& events) {
   manifest.spacing_m = options.voxel_m;
-  PriorWriter writer(directory, std::move(manifest), Overwrite::refuse);
+  PriorWriter writer(directory, std::move(manifest), Overwrite::refuse, spool_bytes);
   VoxelOccupancy occupied;
   const std::size_t window = 2 * static_cast<std::size_t>(threads);
   std::vector<ThinnedScan> waiting(scans.size());

@@ -207,19 +207,22 @@ std::optional<RunSummary> run_mapper(const RunOptions& options, int threads, Ove
   if (prior) warn_of_height(start, *prior, events);
   std::optional<NearTiles> near;
   if (prior) near.emplace(*prior, start.frame, method.prior_radius_m, threads);
-  OnlinePass pass{Mapper(method, near, {start.T_map_sensor, motion_at_start(*source, range.first, range.last), period_at_start(*source, range.first, range.last)}, threads), {}};
+  const FirstPose first{start.T_map_sensor, motion_at_start(*source, range.first, range.last), period_at_start(*source, range.first, range.last)};
+  std::optional<OnlinePass> pass(OnlinePass{Mapper(method, near, first, threads), {}});
   Checkpoints checkpoints(output, identity, options.checkpoint_s, events);
   if (options.resume)
-    resume(pass, checkpoints, output.checkpoint_file(), range, events);
+    resume(*pass, checkpoints, output.checkpoint_file(), range, events);
   else
     tell_of_checkpoint(output, events);
   times.start_s = watch.lap();
 
-  map_scans(pass, *source, range, options, checkpoints, events);
+  map_scans(*pass, *source, range, options, checkpoints, events);
   times.online_s = watch.lap();
 
-  std::vector<MappedScan> scans = pass.mapper.finish([&](std::size_t index) { return source->read(index); });
-  for (std::size_t i = 0; i < scans.size(); ++i) scans[i].step_s = pass.step_s[i];
+  std::vector<MappedScan> scans = pass->mapper.finish([&](std::size_t index) { return source->read(index); });
+  for (std::size_t i = 0; i < scans.size(); ++i) scans[i].step_s = pass->step_s[i];
+  pass.reset();   // the map needs room of its own
+  return_freed_memory();
   warn_of_empty_scans(scans, *source, events);
   if (prior) warn_of_bad_start(scans, *prior, events);
   times.estimate_s = watch.lap();
