@@ -61,7 +61,10 @@ void Checkpoints::offer(const Exchange& exchange) {
   std::string build = build_id();
   archive(build, identity_);
   exchange(archive);
-  writing_ = std::async(std::launch::async, [this, state = archive.take()] { output_.keep(state); });
+  writing_ = std::async(std::launch::async, [this, state = archive.take()]() mutable {
+    const std::string kept = std::move(state);   // gone when it is written: the task itself lives on until the next one
+    output_.keep(kept);
+  });
   next_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::max<std::chrono::duration<double>>(interval_, (Clock::now() - now) / most_of_the_time));
 }
 

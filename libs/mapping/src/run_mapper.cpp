@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
 #include <iterator>
 #include <optional>
 
@@ -203,12 +204,13 @@ std::optional<RunSummary> run_mapper(const RunOptions& options, int threads, Ove
     leave_as_it_is(output, options.output, identity, events);
     return std::nullopt;
   }
-  const Start start = find_start(options.initial, prior.get(), first_scan(*source, range.first).points, method.prior_radius_m);
+  const Scan first = first_scan(*source, range.first);
+  auto motion = std::async(std::launch::async, [&] { return motion_at_start(*source, range.first, range.last); });   // as long as finding the CRS takes
+  const Start start = find_start(options.initial, prior.get(), first.points, method.prior_radius_m);
   if (prior) warn_of_height(start, *prior, events);
   std::optional<NearTiles> near;
   if (prior) near.emplace(*prior, start.frame, method.prior_radius_m, threads);
-  const FirstPose first{start.T_map_sensor, motion_at_start(*source, range.first, range.last), period_at_start(*source, range.first, range.last)};
-  std::optional<OnlinePass> pass(OnlinePass{Mapper(method, near, first, threads), {}});
+  std::optional<OnlinePass> pass(OnlinePass{Mapper(method, near, {start.T_map_sensor, motion.get(), period_at_start(*source, range.first, range.last)}, threads), {}});
   Checkpoints checkpoints(output, identity, options.checkpoint_s, events);
   if (options.resume)
     resume(*pass, checkpoints, output.checkpoint_file(), range, events);

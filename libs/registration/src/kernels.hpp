@@ -8,7 +8,7 @@ namespace priormap::kernels {
 
 struct BlockView {
   const std::uint16_t* begin;
-  const float *x, *y, *z;
+  const float *x, *y, *z;   // means
 };
 
 struct MapView {

@@ -37,6 +37,7 @@ class SurfelMap::Block {
   const float* x() const { return x_.data(); }
   const float* y() const { return y_.data(); }
   const float* z() const { return z_.data(); }
+  const SurfelShape* shapes() const { return shapes_.data(); }
 
  private:
   struct Entry {
