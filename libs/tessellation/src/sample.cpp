@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -23,12 +24,34 @@ struct Crossing {
   bool operator<(const Crossing& other) const { return row != other.row ? row < other.row : u < other.u; }
 };
 
+/// Points of a grid's row that lie inside of a face: columns [first, last].
+struct Span {
+  Eigen::Vector3d start;   ///< of the row
+  int first, last;
+};
+
+/// Row by row, or column by column.
+void append(const std::vector<Span>& spans, const Eigen::Vector3d& u, double du, bool by_columns, std::vector<Eigen::Vector3d>& points) {
+  const auto push = [&](const Span& span, int column) { points.push_back(span.start + u * (column * du)); };
+  if (!by_columns) {
+    for (const Span& span : spans)
+      for (int column = span.first; column <= span.last; ++column) push(span, column);
+    return;
+  }
+  int first = std::numeric_limits<int>::max(), last = std::numeric_limits<int>::min();
+  for (const Span& span : spans) first = std::min(first, span.first), last = std::max(last, span.last);
+  for (int column = first; column <= last; ++column)
+    for (const Span& span : spans)
+      if (column >= span.first && column <= span.last) push(span, column);
+}
+
 }  // namespace
 
 struct FaceSampler::Scratch {
   std::vector<Edge3> edges;
   std::vector<Edge2> flat_edges;
   std::vector<Crossing> crossings;
+  std::vector<Span> spans;
 
   void sample_edges(double spacing_m, std::vector<Eigen::Vector3d>& points) const;
   void sample_inside(const PlaneFrame& frame, double spacing_m, std::vector<Eigen::Vector3d>& points);
@@ -72,6 +95,7 @@ void FaceSampler::Scratch::sample_inside(const PlaneFrame& frame, double spacing
   }
   std::ranges::sort(crossings, std::less<>());
 
+  spans.clear();
   const double margin = 0.25 * spacing_m;  // points along the edges already cover what is nearer
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
     const auto& [row, begin_u] = crossings[i];
@@ -79,8 +103,11 @@ void FaceSampler::Scratch::sample_inside(const PlaneFrame& frame, double spacing
     const int first = static_cast<int>(std::ceil((begin_u + margin - low.x()) / du));
     const int last = static_cast<int>(std::floor((end_u - margin - low.x()) / du));
     const Eigen::Vector3d start = frame.origin + frame.u * low.x() + frame.v * (low.y() + row * dv);
-    for (int column = first; column <= last; ++column) points.push_back(start + frame.u * (column * du));
+    spans.push_back({start, first, last});
   }
+  // What stands above each other comes in a row, for those who sort.
+  constexpr double upright = 1e-9;
+  append(spans, frame.u, du, std::hypot(frame.v.x(), frame.v.y()) < upright, points);
 }
 
 FaceSampler::FaceSampler(double spacing_m) : spacing_m_(spacing_m), scratch_(std::make_unique<Scratch>()) {}

@@ -32,6 +32,14 @@ TEST(Sample, AWallIsARegularGridIncludingItsEdges) {
     for (int j = 0; j <= 4; ++j) EXPECT_LT(distance_to_nearest(points, {0.5 * i, 0, 10 + 0.5 * j}), 1e-9);
 }
 
+TEST(Sample, WhatStandsAboveEachOtherOnAWallComesInARow) {
+  const Points points = sampled(wall_face({1, 2}, {31, 14}, 10, 20).polygon, 0.5);
+  std::size_t columns = 0;
+  for (std::size_t i = 1; i < points.size(); ++i) columns += (points[i] - points[i - 1]).head<2>().norm() > 1e-9;
+  EXPECT_LE(columns, 3u * 65u) << "the inside column by column, foot and top along the edge";
+  EXPECT_GT(points.size(), 20u * 65u);
+}
+
 TEST(Sample, NoSpotIsFartherThanTheSpacing) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
