@@ -140,6 +140,7 @@ InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>
   std::optional<Crs> crs = declared;
   if (!options.source_crs.empty()) {
     crs = option_crs("--source-crs", options.source_crs);
+    if (crs->is_vertical()) throw UsageError("--source-crs " + crs->name() + " has heights only; a horizontal CRS is needed too, such as EPSG:25832+7837");
     if (declared && contradicts(*crs, *declared))
       events.warn(file + ": says that it is in " + declared->name() + "; read as " + crs->name() + " by --source-crs");
   }

@@ -26,7 +26,7 @@ Resolved resolve(const PriorOptions& options, const std::vector<std::string>& de
     for (const std::string& text : declared)
       inputs.push_back(resolve_input_crs(options, text.empty() ? std::nullopt : std::optional(Crs::parse(text)), "input.tif", events));
     resolved.crs = resolve_prior_crs(options, inputs, middle, events);
-  } catch (const CrsError& error) {
+  } catch (const Error& error) {
     resolved.error = error.what();
   }
   return resolved;

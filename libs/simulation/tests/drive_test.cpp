@@ -256,7 +256,7 @@ TEST(DriveFaults, AreNamedAndLeaveNothing) {
   const fs::path out = fresh("fault");
   DriveOptions options = small_drive();
   options.route.crs = "EPSG:4326";
-  EXPECT_THROW(simulate_drive(options, out, Overwrite::refuse, 1, {}), CrsError);
+  EXPECT_THROW(simulate_drive(options, out, Overwrite::refuse, 1, {}), UsageError);
   options = small_drive();
   options.trajectory = "/nowhere/poses.txt";
   EXPECT_THROW(simulate_drive(options, out, Overwrite::refuse, 1, {}), IoError);

@@ -83,11 +83,11 @@ TEST_F(OgrFootprints, UnusableFilesAreNamed) {
   const fs::path points = write_features(feature("", R"({"type":"Point","coordinates":[11,48]})"));
   EXPECT_THROW(read(points, {}), FormatError);
   const fs::path file = write_features(feature(R"("h":3)", square));
-  EXPECT_THROW(read(file, {"other", "", "", ""}), FormatError);
+  EXPECT_THROW(read(file, {"other", "", "", ""}), UsageError);
   try {
     read(file, {"", "height", "", ""});
     ADD_FAILURE();
-  } catch (const FormatError& error) {
+  } catch (const UsageError& error) {
     EXPECT_NE(std::string(error.what()).find("it has: h"), std::string::npos) << error.what();
   }
 }

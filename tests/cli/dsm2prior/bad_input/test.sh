@@ -10,6 +10,7 @@ fails_with 2 "EPSG:4326 is not projected" dsm2prior no_crs.asc $utm --crs EPSG:4
 fails_with 2 "EPSG:2263 is not in metres" dsm2prior no_crs.asc $utm --crs EPSG:2263 -o prior
 fails_with 1 "heights are undeclared, but the prior is asked for in EPSG:32632+5773; say --assume-vertical EPSG:5773 if they are in it" dsm2prior no_crs.asc $utm --crs EPSG:32632+5773 -o prior
 fails_with 2 "--crs" dsm2prior no_crs.asc $utm --crs nonsense -o prior
+fails_with 2 "--source-crs EPSG:7837 has heights only" dsm2prior no_crs.asc --source-crs EPSG:7837 -o prior
 fails_with 2 "is no vertical CRS" dsm2prior no_crs.asc $utm --assume-vertical EPSG:4326 -o prior
 fails_with 2 "--bbox-crs" dsm2prior no_crs.asc $utm --quiet --bbox 1,2,3,4 --bbox-crs nonsense -o prior
 fails_with 1 "no_crs.asc: no height lies inside --bbox" dsm2prior no_crs.asc $utm --quiet --bbox 7,43,8,44 -o prior
