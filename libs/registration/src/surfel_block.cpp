@@ -42,6 +42,7 @@ void SurfelMap::Block::merge(std::span<const Item> items, std::span<const std::u
 void SurfelMap::Block::exchange(StateArchive& archive, const SurfelMapOptions& options) {
   archive(entries_);
   if (!archive.reading()) return;
+  for (Entry& entry : entries_) entry.changed = true;   // their shapes are not archived
   order_by_voxel();
   remake_shapes(float(options.voxel_m));
 }
@@ -51,14 +52,18 @@ void SurfelMap::Block::order_by_voxel() {
   for (const Entry& entry : entries_) ++next[entry.voxel + 1u];
   for (std::size_t v = 0; v < voxels_a_block; ++v) next[v + 1] = std::uint16_t(next[v + 1] + next[v]);
   begin_ = next;
-  std::vector<Entry> ordered(entries_.size());
-  for (const Entry& entry : entries_) {
-    ordered[next[entry.voxel]] = entry;
-    ordered[next[entry.voxel]++].changed = true;
-  }
-  entries_ = std::move(ordered);
-  shapes_.resize(entries_.size());
+  std::vector<Entry> entries(entries_.size());
+  std::vector<SurfelShape> shapes(entries_.size());
   for (auto* column : {&x_, &y_, &z_}) column->resize(entries_.size() + lane_padding);
+  shapes_.resize(entries_.size());
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const std::size_t to = next[entries_[i].voxel]++;
+    entries[to] = entries_[i];
+    shapes[to] = shapes_[i];
+    x_[to] = entries_[i].surfel.mean.x(), y_[to] = entries_[i].surfel.mean.y(), z_[to] = entries_[i].surfel.mean.z();
+  }
+  entries_ = std::move(entries);
+  shapes_ = std::move(shapes);
 }
 
 SurfelShape SurfelMap::Block::shape_of(const Entry& entry, float voxel_m) {

@@ -13,6 +13,11 @@
 namespace priormap {
 namespace {
 
+int floor_of(double v) {
+  const auto truncated = static_cast<int>(v);
+  return truncated - (v < truncated);
+}
+
 }  // namespace
 
 SurfelMap::SurfelMap(const SurfelMapOptions& options) : options_(options) {
@@ -23,12 +28,13 @@ SurfelMap::SurfelMap(SurfelMap&&) noexcept = default;
 SurfelMap& SurfelMap::operator=(SurfelMap&&) noexcept = default;
 
 SurfelMap::Item SurfelMap::place(const Eigen::Vector3d& p_map) {
-  const Eigen::Vector3i voxel = (p_map / options_.voxel_m).array().floor().cast<int>();
+  const Eigen::Vector3i voxel = (p_map / options_.voxel_m).unaryExpr(&floor_of);
   const Eigen::Vector3i key = voxel.unaryExpr([](int v) { return v >> 3; });
   const Eigen::Vector3i inside = voxel - block_voxels * key;
   Item item;
-  item.block = index_.find_or_add(key);
-  if (item.block == blocks_.size()) blocks_.emplace_back();
+  if (last_block_ >= blocks_.size() || index_.key(last_block_) != key) last_block_ = index_.find_or_add(key);   // neighbours mostly share one
+  item.block = last_block_;
+  if (item.block == blocks_.size()) blocks_.push_back(std::make_unique<Block>());
   item.voxel = std::uint16_t(inside.x() + block_voxels * (inside.y() + block_voxels * inside.z()));
   item.surfel.mean = (p_map - (block_voxels * options_.voxel_m) * key.cast<double>()).cast<float>();
   return item;
@@ -89,9 +95,9 @@ void SurfelMap::insert_items(const std::vector<Item>& items) {
   for (std::uint32_t i = 0; i < items.size(); ++i) order[next[items[i].block]++] = i;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     if (begin[b] == begin[b + 1]) continue;
-    size_ -= blocks_[b].size();
-    blocks_[b].merge(items, std::span(order).subspan(begin[b], begin[b + 1] - begin[b]), options_);
-    size_ += blocks_[b].size();
+    size_ -= blocks_[b]->size();
+    blocks_[b]->merge(items, std::span(order).subspan(begin[b], begin[b + 1] - begin[b]), options_);
+    size_ += blocks_[b]->size();
   }
 }
 
@@ -106,13 +112,16 @@ void SurfelMap::remove_beyond(const Eigen::Vector3d& center, double distance_m) 
     if (i != keep[i]) blocks_[i] = std::move(blocks_[keep[i]]);
   blocks_.erase(blocks_.begin() + std::ptrdiff_t(keep.size()), blocks_.end());
   size_ = 0;
-  for (const Block& block : blocks_) size_ += block.size();
+  for (const auto& block : blocks_) size_ += block->size();
 }
 
 void SurfelMap::exchange(StateArchive& archive) {
   archive(index_, size_);
-  if (archive.reading()) blocks_ = std::vector<Block>(index_.size());
-  for (Block& block : blocks_) block.exchange(archive, options_);
+  if (archive.reading()) {
+    blocks_.clear();
+    while (blocks_.size() < index_.size()) blocks_.push_back(std::make_unique<Block>());
+  }
+  for (const auto& block : blocks_) block->exchange(archive, options_);
 }
 
 std::optional<SurfelMap::Match> SurfelMap::nearest(const Eigen::Vector3d& query, InstructionSet set) const {
@@ -124,9 +133,10 @@ PointCloud SurfelMap::points(const Eigen::Vector3d& origin) const {
   out.origin = origin;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     const Eigen::Vector3d corner = (block_voxels * options_.voxel_m) * index_.key(b).cast<double>() - origin;
-    for (std::size_t i = 0; i < blocks_[b].size(); ++i) {
-      out.xyz.push_back((corner + blocks_[b].surfel(i).mean.cast<double>()).cast<float>());
-      out.normal.push_back(blocks_[b].shape(i).normal);
+    const Block& block = *blocks_[b];
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      out.xyz.push_back((corner + block.surfel(i).mean.cast<double>()).cast<float>());
+      out.normal.push_back(block.shape(i).normal);
     }
   }
   return out;

@@ -11,8 +11,8 @@ SurfelMapView::SurfelMapView(const SurfelMap& map) : map_(&map) {
   blocks_.reserve(map.blocks_.size());
   shapes_.reserve(map.blocks_.size());
   for (const auto& block : map.blocks_) {
-    blocks_.push_back({block.begin(), block.x(), block.y(), block.z()});
-    shapes_.push_back(block.shapes());
+    blocks_.push_back({block->begin(), block->x(), block->y(), block->z()});
+    shapes_.push_back(block->shapes());
   }
   view_ = {map.index_.slots().data(), std::uint32_t(map.index_.slots().size() - 1), reinterpret_cast<const std::int32_t*>(map.index_.keys().data()),
            blocks_.data(), float(map.options_.voxel_m)};

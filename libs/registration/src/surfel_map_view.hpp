@@ -19,7 +19,7 @@ class SurfelMapView {
 
   const kernels::MapView& kernel_view() const { return view_; }
   const SurfelShape& shape(std::uint32_t block, std::uint32_t entry) const { return shapes_[block][entry]; }
-  std::uint32_t feature(std::uint32_t block, std::uint32_t entry) const { return map_->blocks_[block].feature(entry); }
+  std::uint32_t feature(std::uint32_t block, std::uint32_t entry) const { return map_->blocks_[block]->feature(entry); }
   /// Mean of a surfel relative to the corner of `anchor`.
   Eigen::Vector3f mean(std::uint32_t block, std::uint32_t entry, const Eigen::Vector3i& anchor) const {
     const Eigen::Vector3i offset = block_voxels * map_->index_.key(block) - anchor;

@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <priormap/core/state_archive.hpp>
 #include <priormap/pointcloud/point_cloud.hpp>
@@ -78,7 +79,8 @@ class SurfelMap {
 
   SurfelMapOptions options_;
   VoxelIndex index_;            // block -> number
-  std::vector<Block> blocks_;
+  std::vector<std::unique_ptr<Block>> blocks_;
+  std::uint32_t last_block_ = 0;   // that something was placed in
   std::size_t size_ = 0;
 };
 
