@@ -31,6 +31,8 @@ PlaneMatch levelled(PlaneMatch match) {
   return match;
 }
 
+bool stands_upright(PieceKind kind) { return kind == PieceKind::building || kind == PieceKind::wall; }
+
 PieceKey key_of(const PlaneMatch& match, PieceKind kind, double piece_m) {
   if (kind == PieceKind::building) return {match.feature, 0, 0, kind};
   const auto cell = [&](double v) { return static_cast<int>(std::floor(v / piece_m)); };
@@ -81,12 +83,17 @@ void PiecesOfPrior::move_buildings(PatchCloud& patches) const {
   for (SurfacePatch& patch : patches.patches) {
     if (patch.feature == PointCloud::no_feature || !is_wall(patch.normal.z())) continue;
     const auto found = ids_.find({patch.feature, 0, 0, PieceKind::building});
-    if (found != ids_.end()) patch.mean += pieces_[found->second].offset_m.cast<float>();
+    if (found == ids_.end()) continue;
+    patch.mean += pieces_[found->second].offset_m.cast<float>() - static_cast<float>(outset_m_[PieceKind::building]) * patch.normal;
   }
 }
 
 void PiecesOfPrior::clear_matches() {
-  for (Piece& piece : pieces_) piece.times_seen = 0;
+  for (Piece& piece : pieces_) {
+    piece.times_seen = 0;
+    piece.sum_of_normals.setZero();
+    piece.num_normals = 0;
+  }
   factors_.clear();
 }
 
@@ -95,10 +102,16 @@ void PiecesOfPrior::add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const s
   for (const PlaneMatch& match : matches) {
     const auto id = piece_of(match, T_map_sensor.translation());
     if (!id) continue;
-    const Piece& piece = pieces_[*id];
+    Piece& piece = pieces_[*id];
     const bool ground = piece.kind == PieceKind::ground;
     PlaneMatch heard = ground ? levelled(match) : match;
-    if (piece.kind == PieceKind::building) heard.residual_m += heard.normal.dot(piece.offset_m);   // compared where it had been moved to
+    if (stands_upright(piece.kind)) {
+      const double side = match.normal.dot(T_map_sensor.translation() - match.p_map) < 0 ? -1 : 1;   // walls are seen from outside
+      piece.sum_of_normals += side * match.normal;
+      piece.num_normals += 1;
+      // Buildings were compared where they had been moved to, by their offsets and the outset.
+      heard.residual_m += piece.kind == PieceKind::building ? match.normal.dot(piece.offset_m) : side * outset_m_[piece.kind];
+    }
     const PieceEquations one = equations_of(heard, T_map_sensor, piece.offset_m, ground ? noise.ground_sigma_m : noise.surface_sigma_m,
                                             ground ? noise.ground_kernel_width : noise.kernel_width);
     PieceEquations& sum = equations[*id];
@@ -123,6 +136,23 @@ void PiecesOfPrior::add_to(PoseGraph& graph, const PieceSigmas& sigmas) const {
 
 void PiecesOfPrior::take_offsets(const PoseGraph& graph) {
   for (PieceId p = 0; p < pieces_.size(); ++p) pieces_[p].offset_m = graph.pieces()[p].offset_m;
+  for (const PieceKind kind : piece_kinds)
+    if (stands_upright(kind)) take_outset(kind);
+}
+
+/// What the offsets of all pieces of a kind have in common along their outward normals is no offset of theirs. Few pieces do not tell it from chance.
+void PiecesOfPrior::take_outset(PieceKind kind) {
+  constexpr double none_counts = 4;   // pieces that stand where they should, taken for granted
+  double inward_m = 0, count = none_counts;
+  for (const Piece& piece : pieces_) {
+    if (piece.kind != kind) continue;
+    inward_m += piece.outward().dot(piece.offset_m);
+    count += piece.outward().squaredNorm();
+  }
+  const double outset_m = -inward_m / count;
+  for (Piece& piece : pieces_)
+    if (piece.kind == kind) piece.offset_m += outset_m * piece.outward();
+  outset_m_[kind] += outset_m;
 }
 
 /// Variance components (Foerstner 1979): the squares of the offsets against what the data left free of them, with the weights of the graph's kernel. Few pieces hardly move what was
@@ -167,10 +197,22 @@ std::vector<bool> PiecesOfPrior::contradicted(std::size_t num_poses) const {
 }
 
 CommonVariance PiecesOfPrior::common_variance(const PieceSigmas& sigmas, const PieceShares& shares) const {
-  const auto has = [&](PieceKind kind) { return std::ranges::any_of(pieces_, [&](const Piece& piece) { return piece.kind == kind; }); };
-  const auto of = [&](PieceKind kind, double share) { return has(kind) ? share * sigmas[kind] * sigmas[kind] : 0; };
-  const double level = has(PieceKind::building) ? of(PieceKind::building, shares.building) : of(PieceKind::wall, shares.wall);
-  return {{level, level, of(PieceKind::ground, shares.ground)}, level / (4 * range_m_ * range_m_)};
+  std::array<double, piece_kinds.size()> count{};
+  for (const Piece& piece : pieces_) count[static_cast<std::size_t>(piece.kind)] += 1;
+  // Told by sources that err each in its own way; each piece tells as much as its kind is sure.
+  const auto common_to = [&](std::initializer_list<PieceKind> kinds, double share) {
+    double information = 0, number = 0;
+    for (const PieceKind kind : kinds) {
+      number += count[static_cast<std::size_t>(kind)];
+      information += count[static_cast<std::size_t>(kind)] / (sigmas[kind] * sigmas[kind]);
+    }
+    return std::pair(information, information > 0 ? share * number / information : 0.0);
+  };
+  const auto [of_buildings, building_variance] = common_to({PieceKind::building}, shares.building);
+  const auto [of_walls, wall_variance] = common_to({PieceKind::wall, PieceKind::slope}, shares.wall);
+  const double all = of_buildings + of_walls;
+  const double level = all > 0 ? (of_buildings * of_buildings * building_variance + of_walls * of_walls * wall_variance) / (all * all) : 0;
+  return {{level, level, common_to({PieceKind::ground}, shares.ground).second}, level / (4 * range_m_ * range_m_)};
 }
 
 }  // namespace priormap

@@ -17,12 +17,13 @@ enum class PieceKind { building, wall, slope, ground };   ///< building: walls o
 
 constexpr std::array piece_kinds = {PieceKind::building, PieceKind::wall, PieceKind::slope, PieceKind::ground};
 
-/// One value for each kind.
-struct PieceSigmas {
-  std::array<double, piece_kinds.size()> sigma_m;
-  double& operator[](PieceKind kind) { return sigma_m[static_cast<std::size_t>(kind)]; }
-  double operator[](PieceKind kind) const { return sigma_m[static_cast<std::size_t>(kind)]; }
+/// A length for each kind.
+struct LengthsByKind {
+  std::array<double, piece_kinds.size()> length_m;
+  double& operator[](PieceKind kind) { return length_m[static_cast<std::size_t>(kind)]; }
+  double operator[](PieceKind kind) const { return length_m[static_cast<std::size_t>(kind)]; }
 };
+using PieceSigmas = LengthsByKind;
 
 /// A piece of the prior whose position errors hang together: the walls of one feature, or the surfaces of one kind without a feature in one cell of a horizontal grid.
 struct PieceKey {
@@ -74,7 +75,8 @@ class PiecesOfPrior {
   /// What the offsets say about the sigmas of each kind. @param stated  beforehand, counted as ten pieces' worth; @param used  in the graph that gave offsets and covariances
   PieceSigmas estimated_sigmas(const PieceSigmas& stated, const PieceSigmas& used, const std::vector<Eigen::Matrix3d>& covariances,
                                const std::vector<double>& weights) const;
-  /// How sure the prior is as a whole: the errors of its pieces have a share of their variance in common, which no number of pieces averages out. Zero without pieces.
+  /// How sure the prior is as a whole: the errors of its pieces have a share of their variance in common, which no number of pieces averages out. Buildings and what belongs to none
+  /// count by what they tell of the place. Zero without pieces.
   /// @param sigmas  of the kinds of pieces
   CommonVariance common_variance(const PieceSigmas& sigmas, const PieceShares& shares) const;
   /// Around which poses the prior's walls are not where the scans see walls: the poses are wrong, or the prior is of another place. What knows few walls contradicts nothing.
@@ -87,10 +89,16 @@ class PiecesOfPrior {
     Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
     std::size_t times_seen = 0;
     double most_voices = 0, voices = 0;   // for that offset, and in all
+    Eigen::Vector3d sum_of_normals = Eigen::Vector3d::Zero();   // outward, of its walls as compared
+    double num_normals = 0;
+    /// Along which all its walls would seem shifted if they stood outside of the real ones by 1 m; nearly zero where it is seen from all sides.
+    Eigen::Vector3d outward() const { return num_normals > 0 ? Eigen::Vector3d(sum_of_normals / num_normals) : Eigen::Vector3d::Zero(); }
   };
   /// The piece that a comparison is with; none where it tells nothing.
   std::optional<PieceId> piece_of(const PlaneMatch& match, const Eigen::Vector3d& sensor);
+  void take_outset(PieceKind kind);
   double piece_m_, range_m_;
+  LengthsByKind outset_m_{};   // by which walls stand outside of the real ones on every side: outlines of roofs, steps of a surface model
   std::map<PieceKey, PieceId> ids_;
   std::vector<Piece> pieces_;
   std::map<PieceId, OffsetVotes> votes_;

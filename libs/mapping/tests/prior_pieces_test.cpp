@@ -126,8 +126,10 @@ TEST(PriorPieces, WhatAllPiecesOfAKindHaveInCommonNoNumberOfThemAveragesOut) {
   raster.add(0, pose(0, 0, 0), {wall, ground}, noise);
   EXPECT_TRUE(raster.common_variance(sigmas, shares).position_m2.isApprox(Eigen::Vector3d(0.0144, 0.0144, 1e-4)));
   both.add(0, pose(0, 0, 0), {wall, building}, noise);
-  EXPECT_TRUE(both.common_variance(sigmas, shares).position_m2.isApprox(Eigen::Vector3d(0.04, 0.04, 0)));
-  EXPECT_NEAR(both.common_variance(sigmas, shares).yaw_rad2, 0.04 / (140 * 140), 1e-12);
+  const double of_building = 1 / 0.16, of_wall = 1 / 0.09, all = of_building + of_wall;
+  const double level = (of_building * of_building * 0.04 + of_wall * of_wall * 0.0144) / (all * all);   // each as far as it is heard
+  EXPECT_TRUE(both.common_variance(sigmas, shares).position_m2.isApprox(Eigen::Vector3d(level, level, 0)));
+  EXPECT_NEAR(both.common_variance(sigmas, shares).yaw_rad2, level / (140 * 140), 1e-12);
 }
 
 TEST(PriorPieces, WhatKnowsFewWallsContradictsNothing) {
@@ -162,6 +164,30 @@ TEST_F(ShiftedWalls, OneShiftedHouseDoesNotMoveTheVehicle) {
   const Marginals marginals = graph.marginals();
   EXPECT_LT(marginals.pieces[0](0, 0), 0.09);
   EXPECT_NEAR(marginals.pieces[0](2, 2), 0.09, 1e-3);   // walls say nothing of height
+}
+
+TEST(PriorPieces, WallsThatStandOutsideOnEverySideNarrowNoStreet) {
+  PiecesOfPrior pieces(20, 70);
+  Eigen::Isometry3d estimated = pose(0, 0, 0);
+  const double outset_m = 0.2, gap_m = 5;   // a street along x: walls of the prior 0.2 m too near on each side, and to the left alone in every other cell
+  for (int pass = 0; pass < 6; ++pass) {
+    pieces.clear_matches();
+    std::vector<PlaneMatch> walls;
+    for (int cell = -3; cell <= 3; ++cell)
+      for (const double side : {1.0, -1.0})
+        for (const double up : {0.0, 2.0, 4.0})
+          if (side > 0 || cell % 2 == 0)
+            walls.push_back({{20.0 * cell + 5, side * (gap_m + 5), up}, {0, -side, 0}, estimated.translation().y() * -side - outset_m, 1e-4});
+    pieces.add(0, estimated, walls, noise);
+    PoseGraph graph(PoseGraphOptions{.absolute_width = 0, .between_width = 0, .piece_width = 0});
+    graph.add_pose(estimated);
+    graph.add_absolute(0, pose(0, 0, 0), 1e-4 * Matrix6d::Identity());
+    pieces.add_to(graph, {{0.3, 0.3, 0.3, 0.1}});
+    graph.optimize();
+    estimated = graph.pose(0);
+    pieces.take_offsets(graph);
+  }
+  EXPECT_NEAR(estimated.translation().y(), 0, 0.03);   // some 0.05 where nothing knows of the outset
 }
 
 TEST_F(ShiftedWalls, TheSigmaOfTheWallsIsEstimatedFromTheirOffsets) {
