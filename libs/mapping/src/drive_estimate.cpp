@@ -3,7 +3,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <functional>
+#include <mutex>
+#include <utility>
 
+#include <priormap/core/parallel.hpp>
 #include <priormap/registration/scan_reducer.hpp>
 
 #include "confidence.hpp"
@@ -49,15 +52,42 @@ std::vector<Keyframe> keyframes_of(const std::vector<ScanRecord>& records, const
   return keyframes;
 }
 
+/// Scans of the drive, read again and reduced; by several threads at once.
+class ScansAgain {
+ public:
+  ScansAgain(const ReadScan& read, double reduce_m) : read_(read), reduce_m_(reduce_m) {}
+
+  SurfelCloud surfels_of(const ScanRecord& record) {
+    ScanReducer reducer = take();
+    SurfelCloud surfels = reducer.reduce(read_(record.index).points);
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(reducer));
+    undo_motion(surfels, record.odometry.velocity);
+    return surfels;
+  }
+
+ private:
+  ScanReducer take() {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty()) return ScanReducer(reduce_m_);
+    ScanReducer reducer = std::move(idle_.back());
+    idle_.pop_back();
+    return reducer;
+  }
+
+  const ReadScan& read_;
+  double reduce_m_;
+  std::mutex mutex_;
+  std::vector<ScanReducer> idle_;
+};
+
 /// Compares scans with the prior where they are thought to have been taken.
 class PriorComparison {
  public:
-  PriorComparison(const NearTiles& prior, const PiecesOfPrior& pieces, const ReadScan& read, const JointMethodOptions& options)
-      : prior_(prior, PriorSurfels(options.tracking.prior), [&pieces](PatchCloud& patches) { pieces.move_buildings(patches); }), read_(read), reducer_(options.reduce_m), registration_(one_step(options.tracking.registration)) {}
+  PriorComparison(const NearTiles& prior, const PiecesOfPrior& pieces, const JointMethodOptions& options)
+      : prior_(prior, PriorSurfels(options.tracking.prior), [&pieces](PatchCloud& patches) { pieces.move_buildings(patches); }), registration_(one_step(options.tracking.registration)) {}
 
-  std::vector<PlaneMatch> at(const ScanRecord& record, const Eigen::Isometry3d& T_map_sensor) {
-    SurfelCloud surfels = reducer_.reduce(read_(record.index).points);
-    undo_motion(surfels, record.odometry.velocity);
+  std::vector<PlaneMatch> at(const SurfelCloud& surfels, const Eigen::Isometry3d& T_map_sensor) {
     const auto targets = prior_.around(T_map_sensor.translation()).targets(0.0, PriorSurfels::unweighted);
     registration_.align(surfels, targets, T_map_sensor);
     std::vector<PlaneMatch> matches;
@@ -76,8 +106,6 @@ class PriorComparison {
     return options;
   }
   PriorWindow<PriorSurfels> prior_;
-  const ReadScan& read_;
-  ScanReducer reducer_;
   JointRegistration registration_;
 };
 
@@ -101,7 +129,8 @@ class DriveGraph {
   const Eigen::Isometry3d& pose(std::size_t k) const { return poses_[k]; }
 
   /// @return the marginals at the new poses
-  Marginals estimate(PiecesOfPrior& pieces, const PieceSigmas& sigmas, std::vector<double>& weights) {
+  /// @param least_gain  see PoseGraph::optimize
+  Marginals estimate(PiecesOfPrior& pieces, const PieceSigmas& sigmas, double least_gain, std::vector<double>& weights) {
     PoseGraph graph(options_.graph);
     for (std::size_t k = 0; k < size(); ++k) {
       graph.add_pose(poses_[k]);
@@ -109,15 +138,18 @@ class DriveGraph {
     }
     if (pieces.size() > 0) graph.add_absolute(0, T_map_start_, symmetric(start_information(T_map_start_)));   // what no piece holds must not float, such as the height over walls alone
     pieces.add_to(graph, sigmas);
-    graph.optimize();
+    graph.optimize(least_gain);
     for (std::size_t k = 0; k < size(); ++k) poses_[k] = graph.pose(k);
     pieces.take_offsets(graph);
     weights = graph.piece_weights();
     return graph.marginals();
   }
 
-  /// Adds what all poses have in common.
-  void add_common(const CommonVariance& common, std::vector<Matrix6d>& covariances) const {
+  /// Adds what all poses have in common: `common` is of one place, and those that have no piece of the prior in sight in common are averaged, since the odometry ties them.
+  void add_common(CommonVariance common, std::vector<Matrix6d>& covariances) const {
+    const double num_places = static_cast<double>(places_apart(2 * options_.range_m));
+    common.position_m2 /= num_places;
+    common.yaw_rad2 /= num_places;
     for (std::size_t k = 0; k < size(); ++k) {
       const Eigen::Matrix3d R = poses_[k].linear();
       covariances[k].topLeftCorner<3, 3>() += common.yaw_rad2 * R.row(2).transpose() * R.row(2);
@@ -151,6 +183,13 @@ class DriveGraph {
   }
 
  private:
+  /// How many places along the drive lie that far from each other.
+  std::size_t places_apart(double distance_m) const {
+    std::vector<Eigen::Vector3d> places;
+    for (const Eigen::Isometry3d& pose : poses_)
+      if (std::ranges::all_of(places, [&](const Eigen::Vector3d& p) { return (p - pose.translation()).norm() >= distance_m; })) places.push_back(pose.translation());
+    return places.size();
+  }
   static Matrix6d symmetric(const Matrix6d& m) { return 0.5 * (m + m.transpose()); }
   const Eigen::Isometry3d& T_odom(std::size_t k) const { return records_[keyframes_[k].record].odometry.T_odom_sensor; }
 
@@ -173,9 +212,13 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
   PieceSigmas sigmas = stated;
   Marginals marginals;
   std::vector<double> weights;
+  ScansAgain scans(read_again, options.reduce_m);
   const auto compare = [&](auto&& take) {
-    PriorComparison comparison(*prior, pieces, read_again, options);
-    for (std::size_t k = 0; k < graph.size(); ++k) take(k, graph.pose(k), comparison.at(graph.record(k), graph.pose(k)));
+    PriorComparison comparison(*prior, pieces, options);
+    std::vector<SurfelCloud> ready(graph.size());
+    ordered_pipeline(
+        graph.size(), prior->threads(), 2 * static_cast<std::size_t>(prior->threads()), [&](std::size_t k) { ready[k] = scans.surfels_of(graph.record(k)); },
+        [&](std::size_t k) { take(k, graph.pose(k), comparison.at(std::exchange(ready[k], {}), graph.pose(k))); });
     return comparison.stated_building_sigma_m();
   };
   if (prior) {
@@ -191,8 +234,10 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
       const PieceNoise noise{how.surface_sigma_m, how.ground_surface_sigma_m, coarse * how.kernel_width, coarse * how.ground_kernel_width};
       compare([&](std::size_t k, const Eigen::Isometry3d& T, const std::vector<PlaneMatch>& matches) { pieces.add(k, T, matches, noise); });
     }
-    marginals = graph.estimate(pieces, sigmas, weights);
-    if (pass + 1 < how.passes) sigmas = pieces.estimated_sigmas(stated, sigmas, marginals.pieces, weights);
+    const bool last = !prior || pass + 1 == how.passes;
+    constexpr double least_gain = 1e-6, least_gain_before = 1e-4;   // what comes before the last pass is compared anew
+    marginals = graph.estimate(pieces, sigmas, last ? least_gain : least_gain_before, weights);
+    if (!last) sigmas = pieces.estimated_sigmas(stated, sigmas, marginals.pieces, weights);
   }
   graph.add_common(pieces.common_variance(sigmas, {how.common_share, how.wall_common_share, how.ground_common_share}), marginals.poses);
   const std::vector<bool> contradicted = pieces.contradicted(graph.size());

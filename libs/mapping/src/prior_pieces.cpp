@@ -212,7 +212,7 @@ CommonVariance PiecesOfPrior::common_variance(const PieceSigmas& sigmas, const P
   const auto [of_walls, wall_variance] = common_to({PieceKind::wall, PieceKind::slope}, shares.wall);
   const double all = of_buildings + of_walls;
   const double level = all > 0 ? (of_buildings * of_buildings * building_variance + of_walls * of_walls * wall_variance) / (all * all) : 0;
-  return {{level, level, common_to({PieceKind::ground}, shares.ground).second}, level / (4 * range_m_ * range_m_)};
+  return {{level, level, common_to({PieceKind::ground}, shares.ground).second}, level / (3 * range_m_ * range_m_)};
 }
 
 }  // namespace priormap

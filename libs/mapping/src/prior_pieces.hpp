@@ -44,7 +44,7 @@ struct PieceNoise {
 /// Normal equations of one comparison. @param offset_m  of the piece, as far as it is known: what strays from there is an outlier
 PieceEquations equations_of(const PlaneMatch& match, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, double surface_sigma_m, double kernel_width);
 
-/// Shares of the variance of their offsets that all pieces of a kind have in common.
+/// Shares of the variance of their offsets that the pieces of a kind within sight of one place have in common.
 struct PieceShares {
   double building, wall, ground;
 };
@@ -75,7 +75,7 @@ class PiecesOfPrior {
   /// What the offsets say about the sigmas of each kind. @param stated  beforehand, counted as ten pieces' worth; @param used  in the graph that gave offsets and covariances
   PieceSigmas estimated_sigmas(const PieceSigmas& stated, const PieceSigmas& used, const std::vector<Eigen::Matrix3d>& covariances,
                                const std::vector<double>& weights) const;
-  /// How sure the prior is as a whole: the errors of its pieces have a share of their variance in common, which no number of pieces averages out. Buildings and what belongs to none
+  /// How sure the prior is of a place: the errors of its pieces have a share of their variance in common, which no number of pieces averages out. Buildings and what belongs to none
   /// count by what they tell of the place. Zero without pieces.
   /// @param sigmas  of the kinds of pieces
   CommonVariance common_variance(const PieceSigmas& sigmas, const PieceShares& shares) const;

@@ -129,7 +129,7 @@ TEST(PriorPieces, WhatAllPiecesOfAKindHaveInCommonNoNumberOfThemAveragesOut) {
   const double of_building = 1 / 0.16, of_wall = 1 / 0.09, all = of_building + of_wall;
   const double level = (of_building * of_building * 0.04 + of_wall * of_wall * 0.0144) / (all * all);   // each as far as it is heard
   EXPECT_TRUE(both.common_variance(sigmas, shares).position_m2.isApprox(Eigen::Vector3d(level, level, 0)));
-  EXPECT_NEAR(both.common_variance(sigmas, shares).yaw_rad2, level / (140 * 140), 1e-12);
+  EXPECT_NEAR(both.common_variance(sigmas, shares).yaw_rad2, level / (3 * 70 * 70), 1e-12);
 }
 
 TEST(PriorPieces, WhatKnowsFewWallsContradictsNothing) {

@@ -187,12 +187,12 @@ class PoseProblem {
   }
   const Eigen::Vector3d& offset(std::size_t i) const { return offsets_[i]; }
 
-  OptimizeSummary solve(bool sparse) {
+  OptimizeSummary solve(bool sparse, double least_gain) {
     ceres::Solver::Options options;
     options.linear_solver_type = sparse ? ceres::SPARSE_NORMAL_CHOLESKY : ceres::DENSE_NORMAL_CHOLESKY;
     options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
     options.max_num_iterations = options_.max_iterations;
-    options.function_tolerance = 1e-9;
+    options.function_tolerance = least_gain;
     options.parameter_tolerance = 1e-14;
     options.num_threads = 1;
     options.logging_type = ceres::SILENT;
@@ -302,12 +302,12 @@ OptimizeSummary PoseGraph::optimize_last(std::size_t window) {
     for (const std::size_t f : factors_of_[i].absolute) problem.add(absolute_[f], i - oldest);
     for (const std::size_t f : factors_of_[i].between) problem.add(between_[f], between_[f].a - oldest, between_[f].b - oldest);
   }
-  const OptimizeSummary summary = problem.solve(false);
+  const OptimizeSummary summary = problem.solve(false, 1e-9);
   for (std::size_t i = begin; i < size(); ++i) poses_[i] = problem.pose(i - oldest);
   return summary;
 }
 
-OptimizeSummary PoseGraph::optimize() {
+OptimizeSummary PoseGraph::optimize(double least_gain) {
   std::vector<char> anchored(size());
   for (std::size_t i = 0; i < size(); ++i) anchored[i] = !factors_of_[i].absolute.empty();
   for (const auto& factor : piece_factors_) anchored[factor.pose] = 1;
@@ -320,7 +320,7 @@ OptimizeSummary PoseGraph::optimize() {
   for (const auto& factor : absolute_) problem.add(factor, factor.id);
   for (const auto& factor : between_) problem.add(factor, factor.a, factor.b);
   for (const auto& factor : piece_factors_) problem.add(factor);
-  const OptimizeSummary summary = problem.solve(true);
+  const OptimizeSummary summary = problem.solve(true, least_gain);
   for (std::size_t i = 0; i < size(); ++i)
     if (!held[i]) poses_[i] = problem.pose(i);
   for (std::size_t p = 0; p < pieces_.size(); ++p) pieces_[p].offset_m = problem.offset(p);

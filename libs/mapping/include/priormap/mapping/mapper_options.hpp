@@ -97,9 +97,9 @@ struct EstimateOptions {
   double slope_sigma_m = 0.3;
   double ground_sigma_m = 0.1;
   double surface_sigma_m = 0.1;
-  double ground_surface_sigma_m = 0.05;
-  double common_share = 0.025;
-  double wall_common_share = 0.12;
+  double ground_surface_sigma_m = 0.03;
+  double common_share = 0.09;
+  double wall_common_share = 0.54;
   double ground_common_share = 0.03;
   double kernel_width = 3;
   double ground_kernel_width = 2.5;
@@ -116,7 +116,7 @@ struct EstimateOptions {
     visit("wall-sigma", wall_sigma_m, {"the same of walls that belong to no building known", "m", 1e-3, 100});
     visit("slope-sigma", slope_sigma_m, {"the same of slopes, such as the edges of a surface model", "m", 1e-3, 100});
     visit("ground-sigma", ground_sigma_m, {"the same of level ground", "m", 1e-3, 100});
-    visit("common-share", common_share, {"share of the variance of the buildings' offsets that all have in common, as when a whole source is shifted; the poses are no surer than that", "", 0, 1});
+    visit("common-share", common_share, {"share of the variance of the buildings' offsets that those within sight of one place have in common, which their number does not average out", "", 0, 1});
     visit("wall-common-share", wall_common_share, {"the same of walls that belong to no building known, which a surface model puts to one side of the real ones", "", 0, 1});
     visit("ground-common-share", ground_common_share, {"the same of the ground", "", 0, 1});
     visit("surface-sigma", surface_sigma_m, {"roughness of the prior's surfaces against the real ones, within a piece", "m", 1e-3, 10});

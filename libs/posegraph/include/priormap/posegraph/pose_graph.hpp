@@ -94,8 +94,8 @@ class PoseGraph {
 
   /// Frame by frame: optimises the last `window` poses over the factors that touch them, all earlier ones held.
   OptimizeSummary optimize_last(std::size_t window = 1);
-  /// All poses over all factors. A part of the graph without any absolute factor has its first pose held.
-  OptimizeSummary optimize();
+  /// All poses over all factors, until a step lowers the cost by less than a share `least_gain` of it. A part of the graph without any absolute factor has its first pose held.
+  OptimizeSummary optimize(double least_gain = 1e-9);
 
   /// Poses, factors and pieces, for a graph made with the same options.
   void exchange(StateArchive& archive);
