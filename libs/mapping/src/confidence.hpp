@@ -14,6 +14,9 @@ Matrix6d unknown_gap_covariance();
 /// The start that a user gives: well levelled, its height within a metre, its place within five metres and its direction within ten degrees.
 Matrix6d start_information(const Eigen::Isometry3d& T_map_sensor);
 
+/// By how much the height that a user gives for the start may differ from the prior's before one of both is taken to be wrong.
+constexpr double usual_height_gap_m = 0.25;
+
 /// Inverse of an information matrix. Directions that nothing constrains are as uncertain as can be, but finite.
 Matrix6d covariance_of(const Matrix6d& information);
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <mutex>
 #include <utility>
@@ -157,6 +158,18 @@ class DriveGraph {
     }
   }
 
+  /// Where the prior puts the start clearly above or below its known height, one of both is wrong, and no scan tells which.
+  void doubt_heights(double known_height_m, std::vector<Matrix6d>& covariances) const {
+    const double gap_m = poses_.front().translation().z() - known_height_m;
+    const Eigen::Vector3d up = poses_.front().linear().row(2);
+    const double sigma_m = std::sqrt(up.dot(covariances.front().bottomRightCorner<3, 3>() * up));
+    if (std::abs(gap_m) < std::max(usual_height_gap_m, 3 * sigma_m)) return;
+    for (std::size_t k = 0; k < size(); ++k) {
+      const Eigen::Vector3d up_k = poses_[k].linear().row(2);
+      covariances[k].bottomRightCorner<3, 3>() += gap_m * gap_m * up_k * up_k.transpose();
+    }
+  }
+
   /// All scans: those between keyframes ride along, corrected little by little; over a gap in the odometry with the one before.
   std::vector<EstimatedPose> all_poses(const std::vector<Matrix6d>& covariances, const std::vector<bool>& contradicted) const {
     std::vector<EstimatedPose> poses(records_.size());
@@ -203,7 +216,7 @@ class DriveGraph {
 }  // namespace
 
 std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const std::optional<NearTiles>& prior, const ReadScan& read_again,
-                                          const JointMethodOptions& options) {
+                                          const JointMethodOptions& options, std::optional<double> known_height_m) {
   const EstimateOptions& how = options.estimate;
   center_velocities(records);
   DriveGraph graph(records, how);
@@ -240,6 +253,7 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
     if (!last) sigmas = pieces.estimated_sigmas(stated, sigmas, marginals.pieces, weights);
   }
   graph.add_common(pieces.common_variance(sigmas, {how.common_share, how.wall_common_share, how.ground_common_share}), marginals.poses);
+  if (prior && known_height_m) graph.doubt_heights(*known_height_m, marginals.poses);
   const std::vector<bool> contradicted = pieces.contradicted(graph.size());
   if (std::ranges::all_of(contradicted, std::identity()))   // nowhere is the drive known to be
     for (Matrix6d& covariance : marginals.poses) covariance += unknown_gap_covariance();

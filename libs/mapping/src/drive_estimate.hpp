@@ -26,7 +26,8 @@ struct ScanRecord {
 /// A match to the local map errs about as much as its information says, but the next one errs about the same map, not about the last pose: the errors do not add up
 /// scan by scan. What adds up is the drift of the map itself, by the way driven. So keyframes stand some metres apart, between two of them counts one match, and the
 /// scans in between ride along.
+/// @param known_height_m  of the first scan, from elsewhere than the prior: what the prior is biased by as a whole no scan can tell, so that heights are no surer than these two agree
 std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const std::optional<NearTiles>& prior, const ReadScan& read_again,
-                                          const JointMethodOptions& options);
+                                          const JointMethodOptions& options, std::optional<double> known_height_m = std::nullopt);
 
 }  // namespace priormap

@@ -18,7 +18,7 @@ namespace {
 class JointMethod : public MappingMethod {
  public:
   JointMethod(const JointMethodOptions& options, const std::optional<NearTiles>& prior, const FirstPose& first)
-      : options_(options), prior_(prior), first_velocity_(steady_velocity(Eigen::Isometry3d::Identity(), first.motion, first.motion_s)), reducer_(options.reduce_m),
+      : options_(options), prior_(prior), known_height_m_(first.knows_height ? std::optional(first.T_map_sensor.translation().z()) : std::nullopt), first_velocity_(steady_velocity(Eigen::Isometry3d::Identity(), first.motion, first.motion_s)), reducer_(options.reduce_m),
         odometry_(options.odometry, first_velocity_), tracker_(options.tracking, options.reduce_m, prior, first.T_map_sensor) {}
 
   PrepareScan preparation() const override {
@@ -45,7 +45,7 @@ class JointMethod : public MappingMethod {
         [&](std::size_t i) { placed(join(stretches[i], *std::exchange(driven[i], std::nullopt), wanted.source)); });
   }
 
-  std::vector<EstimatedPose> finish(const ReadScan& read_again) override { return estimate_drive(records_, prior_, read_again, options_); }
+  std::vector<EstimatedPose> finish(const ReadScan& read_again) override { return estimate_drive(records_, prior_, read_again, options_, known_height_m_); }
 
   void exchange(StateArchive& archive) override { archive(odometry_, T_odom_own_, tracker_, last_match_, records_); }
 
@@ -105,6 +105,7 @@ class JointMethod : public MappingMethod {
 
   JointMethodOptions options_;
   std::optional<NearTiles> prior_;
+  std::optional<double> known_height_m_;
   Vector6d first_velocity_;
   ScanReducer reducer_;
   Odometry odometry_;

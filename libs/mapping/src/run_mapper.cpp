@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <iomanip>
 #include <future>
 #include <iterator>
 #include <optional>
+#include <sstream>
 
 #include <priormap/core/error.hpp>
 #include <priormap/core/process.hpp>
@@ -13,6 +16,7 @@
 #include <priormap/mapping/read_ahead.hpp>
 
 #include "checkpoints.hpp"
+#include "confidence.hpp"
 #include "run_inputs.hpp"
 #include "run_report.hpp"
 #include "trajectory_writer.hpp"
@@ -167,6 +171,16 @@ void warn_of_bad_start(const std::vector<MappedScan>& scans, const PriorPoints& 
   }
 }
 
+void warn_of_height_gap(const std::vector<MappedScan>& scans, const Start& start, const PriorPoints& prior, const Events& events) {
+  const double gap_m = scans.front().T_map_sensor.translation().z() - start.T_map_sensor.translation().z();
+  const bool in_prior = scans.front().verdict == Verdict::anchored || scans.front().verdict == Verdict::weak;
+  if (!start.knows_height || !in_prior || std::abs(gap_m) < usual_height_gap_m) return;
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(2) << prior.identity().name << " puts the start " << std::abs(gap_m) << " m " << (gap_m < 0 ? "lower" : "higher")
+       << " than the initial pose: one of both heights is off, no scan tells which, and the sigmas of all heights say so; --initial-lonlat without --initial-height trusts the prior";
+  events.warn(text.str());
+}
+
 RunSummary summarise(const std::vector<MappedScan>& scans) {
   RunSummary summary;
   summary.num_scans = scans.size();
@@ -210,7 +224,7 @@ std::optional<RunSummary> run_mapper(const RunOptions& options, int threads, Ove
   if (prior) warn_of_height(start, *prior, events);
   std::optional<NearTiles> near;
   if (prior) near.emplace(*prior, start.frame, method.prior_radius_m, threads);
-  std::optional<OnlinePass> pass(OnlinePass{Mapper(method, near, {start.T_map_sensor, motion.get(), period_at_start(*source, range.first, range.last)}, threads), {}});
+  std::optional<OnlinePass> pass(OnlinePass{Mapper(method, near, {start.T_map_sensor, motion.get(), period_at_start(*source, range.first, range.last), start.knows_height}, threads), {}});
   Checkpoints checkpoints(output, identity, options.checkpoint_s, events);
   if (options.resume)
     resume(*pass, checkpoints, output.checkpoint_file(), range, events);
@@ -227,6 +241,7 @@ std::optional<RunSummary> run_mapper(const RunOptions& options, int threads, Ove
   return_freed_memory();
   warn_of_empty_scans(scans, *source, events);
   if (prior) warn_of_bad_start(scans, *prior, events);
+  if (prior && options.preset != "paper") warn_of_height_gap(scans, start, *prior, events);
   times.estimate_s = watch.lap();
 
   RunSummary summary = summarise(scans);

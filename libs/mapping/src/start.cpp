@@ -108,7 +108,7 @@ Start start_at_lon_lat(const InitialPose& initial, const PriorPoints* prior, con
   const double ground = initial.height_m || !prior ? 0 : prior_ground(*prior, place) * crs.vertical_unit_m();
   place.z() = initial.height_m ? *initial.height_m : prior ? ground - ground_below_sensor(first_scan) : 0;
 
-  Start start{MapFrame::at(crs, place), crs, Eigen::Isometry3d::Identity()};
+  Start start{MapFrame::at(crs, place), crs, Eigen::Isometry3d::Identity(), initial.height_m.has_value()};
   const Eigen::Vector3d p_map = start.frame.to_map(place);
   const double yaw_true = rad_per_deg * (initial.yaw_deg ? *initial.yaw_deg : 90 - *initial.heading_deg);
   start.T_map_sensor.linear() = Eigen::AngleAxisd(yaw_true + start.frame.convergence(p_map), Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -120,9 +120,9 @@ Start start_at_pose(const InitialPose& initial, const PriorPoints* prior, double
   const Eigen::Isometry3d T = initial.pose.empty() ? Eigen::Isometry3d::Identity() : pose_of(initial.pose);
   const Swapped swapped{{T.translation().y(), T.translation().x(), T.translation().z()}, "swap the first two numbers of --initial-pose: it takes the easting first"};
   if (prior) check_near(*prior, T.translation(), prior_radius_m, swapped);
-  if (!prior || !prior->crs()) return {MapFrame::local(), std::nullopt, T};
+  if (!prior || !prior->crs()) return {MapFrame::local(), std::nullopt, T, true};
   const MapFrame frame = MapFrame::at(*prior->crs(), T.translation());
-  return {frame, prior->crs(), frame.pose_to_map(T)};
+  return {frame, prior->crs(), frame.pose_to_map(T), true};
 }
 
 }  // namespace

@@ -39,6 +39,11 @@ TEST(DriveEstimate, AcrossAGapNobodyIsSure) {
   EXPECT_GT(sigma_m(29), 50);
 }
 
+TEST(DriveEstimate, WithoutAPriorNoHeightIsDoubted) {
+  const auto poses = estimate_drive(drive_with_a_gap(), std::nullopt, {}, {}, 5.0);
+  EXPECT_EQ(poses.front().covariance(5, 5), estimate_drive(drive_with_a_gap(), std::nullopt, {}, {}).front().covariance(5, 5));
+}
+
 TEST(DriveEstimate, WithoutAPriorTheOdometryStays) {
   const auto poses = estimate_drive(drive_with_a_gap(), std::nullopt, {}, {});
   for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_NEAR(poses[i].T_map_sensor.translation().x(), static_cast<double>(i), 1e-6) << i;

@@ -60,6 +60,22 @@ TEST_F(Street, TheDefaultPresetFindsItsWayWithinCentimetres) {
   }
 }
 
+TEST_F(Street, HeightsAreNoSurerThanPriorAndStartAgree) {
+  const test::TiledPoints tiles(world_, 50);
+  const NearTiles prior(tiles, MapFrame::local(), 150);
+  const auto first_sigma_m = [&](double start_height_m, bool knows_height) {
+    FirstPose first{pose(0.5, -0.4, start_height_m, 0.03), pose(1.2, 0.05, 0, 0.02)};
+    first.knows_height = knows_height;
+    Mapper mapper(MapperOptions::preset("default"), prior, first, 1);
+    for (int k = 0; k < 5; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+    return std::sqrt(mapper.finish(read_again).front().covariance(5, 5));
+  };
+  const double height_m = truth(0).translation().z();
+  EXPECT_LT(first_sigma_m(height_m + 0.5, false), 0.1);
+  EXPECT_LT(first_sigma_m(height_m + 0.1, true), 0.1);
+  EXPECT_GT(first_sigma_m(height_m + 0.5, true), 0.45);
+}
+
 /// What a spinning head sees that is driven on meanwhile: the time of a point follows from its azimuth.
 Scan swept_from(double length_m, double k, const std::function<Eigen::Isometry3d(double)>& truth) {
   constexpr double period_s = 0.1;

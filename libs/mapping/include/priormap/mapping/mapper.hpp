@@ -20,6 +20,7 @@ struct FirstPose {
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();   ///< T_previous_sensor,
   double motion_s = 0.1;                                      ///< in that time
+  bool knows_height = false;                                   ///< from elsewhere than the prior, whose heights it can check
 };
 
 /// A scan made ready to be placed, as far as no pose is needed for it.

@@ -32,6 +32,7 @@ struct Start {
   MapFrame frame;
   std::optional<Crs> crs;                  ///< in which results are written; none: a local frame
   Eigen::Isometry3d T_map_sensor;
+  bool knows_height = false;               ///< the user gave it
 };
 
 /// @param prior  null: odometry, in a local frame, or (with a longitude and latitude) in the UTM zone there
