@@ -14,13 +14,15 @@ namespace {
 
 double translation_information(const Matrix6d& information) { return information.bottomRightCorner<3, 3>().trace(); }
 
-/// The scan without roofs: they would lift the pose where no ground holds it.
-SurfelCloud without_roofs(const SurfelCloud& scan, const Eigen::Matrix3d& R_map_sensor, double voxel_m) {
+/// Every `stride`th surfel of the scan, without roofs: they would lift the pose where no ground holds it.
+SurfelCloud without_roofs(const SurfelCloud& scan, const Eigen::Matrix3d& R_map_sensor, double voxel_m, std::size_t stride) {
   const Eigen::Matrix3f R = R_map_sensor.cast<float>();
   SurfelCloud kept{scan.origin, {}};
-  kept.surfels.reserve(scan.size());
-  for (const Surfel& surfel : scan.surfels)
+  kept.surfels.reserve(scan.size() / stride + 1);
+  for (std::size_t i = 0; i < scan.size(); i += stride) {
+    const Surfel& surfel = scan.surfels[i];
     if (!is_above_street((R * surfel.mean).cast<double>()) || is_wall(R.row(2).dot(normal_of(surfel, voxel_m)))) kept.surfels.push_back(surfel);
+  }
   return kept;
 }
 
@@ -100,7 +102,10 @@ PriorMatch PriorTracker::word_of(const JointResult& match, std::size_t num_surfe
 std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, const Eigen::Isometry3d& T_odom_sensor) {
   if (whole_scan.empty() || !asks(T_odom_sensor)) return std::nullopt;
   const Eigen::Isometry3d guess = T_map_odom_ * T_odom_sensor;
-  const SurfelCloud scan = without_roofs(whole_scan, guess.linear(), scan_voxel_m_);
+  // Once the drive has been found in the prior, some thousand surfels hold it there as well as all.
+  constexpr std::size_t most_surfels = 3000;
+  const std::size_t stride = num_heard_ < options_.start_keyframes ? 1 : (whole_scan.size() + most_surfels - 1) / most_surfels;
+  const SurfelCloud scan = without_roofs(whole_scan, guess.linear(), scan_voxel_m_, stride);
   if (scan.empty()) return std::nullopt;
   const PriorSurfels& map = prior_->around(guess.translation());
   const auto targets = map.targets(options_.prior_sigma_m, prior_weights_);
