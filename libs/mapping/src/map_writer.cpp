@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <priormap/core/parallel.hpp>
+#include <priormap/core/process.hpp>
 #include <priormap/prior/prior_writer.hpp>
 
 #include "scan_voxels.hpp"
@@ -78,6 +79,8 @@ PriorManifest write_map(const std::filesystem::path& directory, const ScanSource
         if (occupied.memory_bytes() > occupancy_limit_bytes) occupied.forget_beyond(center, 2 * options.range_m, options.voxel_m);
         events.advance("writing the map", static_cast<double>(i + 1) / static_cast<double>(scans.size()));
       });
+  occupied = VoxelOccupancy();   // writing the tiles needs the room
+  return_freed_memory();
   return writer.finish(threads, events);
 }
 

@@ -202,6 +202,9 @@ PriorAssembly::TileResult PriorAssembly::write_tile(TileKey key, const TileFilte
   if (filter) filter(key, points);
   if (halo_steps_ > 0) std::erase_if(points, is_halo);
   renumber(points);
+  constexpr std::size_t large = std::size_t(1) << 20;   // 32 MB, and as much again to sort them: one at a time
+  std::unique_lock one_large_tile(large_tile_mutex_, std::defer_lock);
+  if (points.size() > large) one_large_tile.lock();
   std::vector<PointRecord> spare = tiles_.spare();
   sort_and_unite(points, spare);
   tiles_.recycle(std::move(spare));

@@ -59,7 +59,7 @@ class PriorAssembly {
   FeatureSpool features_;
   std::vector<std::uint32_t> feature_index_;   ///< of the number that add_feature gave; known at the end
   std::vector<std::uint16_t> source_index_;    ///< of the position in the sources as they were given
-  std::mutex closed_mutex_;
+  std::mutex closed_mutex_, large_tile_mutex_;
   std::map<TileKey, TileResult> closed_;
 };
 
