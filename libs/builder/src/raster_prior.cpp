@@ -320,7 +320,7 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
   std::uint64_t num_points = 0;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const RasterPoints points(inputs[i].file, inputs[i].crs.crs, prior, prior_options.spacing_m, raster_options.walls());
-    const TileSquares squares(areas[i], prior_options.tile_size_m, std::min(prior_options.spacing_or(points.cell_size()), points.cell_size()));
+    const TileSquares squares(areas[i], prior_options.tile_size_m, raster_options.walls() ? std::min(prior_options.spacing_or(points.cell_size()), points.cell_size()) : prior_options.spacing_or(points.cell_size()));
     const std::vector<Bounds2> later(areas.begin() + static_cast<std::ptrdiff_t>(i) + 1, areas.end());
     LasPoint common;
     common.classification = static_cast<std::uint8_t>(raster_options.kind == "terrain" ? PointClass::ground : PointClass::unclassified);

@@ -52,7 +52,7 @@ ResumableDirectory::~ResumableDirectory() {
 void ResumableDirectory::remove_leftovers() {
   std::error_code error;
   for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error))
-    if (entry->path() != output_.temporary_path() && entry->path().filename() != checkpoint_name) fs::remove_all(entry->path(), error);
+    if (const std::string name = entry->path().filename().string(); entry->path() != output_.temporary_path() && name != checkpoint_name && !name.starts_with(".replaced")) fs::remove_all(entry->path(), error);
   if (error) throw IoError(folder_, "cannot be cleared: " + error.message());
 }
 

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -15,12 +16,23 @@
 #include <vector>
 
 #include <priormap/core/error.hpp>
+#include <priormap/core/hash.hpp>
 
 namespace priormap {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* prefix = ".tmp-";
+/// With a mark of this host: locks are not always seen by others that share a folder.
+const std::string& prefix() {
+  static const std::string text = [] {
+    std::array<char, 256> host{};
+    ::gethostname(host.data(), host.size() - 1);
+    Sha256 hash;
+    hash.update(std::string(host.data()));
+    return ".tmp-" + hash.hex_digest().substr(0, 8) + "-";
+  }();
+  return text;
+}
 
 bool make(TemporaryOutput::Kind kind, const fs::path& path) {
   if (kind == TemporaryOutput::Kind::directory) return ::mkdir(path.c_str(), 0777) == 0;
@@ -50,8 +62,8 @@ Lock try_lock(const fs::path& path, int& descriptor) {
 /// PID-N-NAME after the prefix.
 bool is_temporary_of(const std::string& entry, const std::string& name) {
   const std::string tail = "-" + name;
-  if (!entry.starts_with(prefix) || !entry.ends_with(tail)) return false;
-  const std::size_t begin = std::strlen(prefix), end = entry.size() - tail.size();
+  if (!entry.starts_with(prefix()) || !entry.ends_with(tail)) return false;
+  const std::size_t begin = prefix().size(), end = entry.size() - tail.size();
   if (end <= begin) return false;
   const std::string numbers = entry.substr(begin, end - begin);
   const std::size_t dash = numbers.find('-');
@@ -63,7 +75,7 @@ std::vector<std::string> temporaries_in(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (std::string name = entry->path().filename().string(); name.starts_with(prefix)) names.push_back(std::move(name));
+    if (std::string name = entry->path().filename().string(); name.starts_with(prefix())) names.push_back(std::move(name));
   return names;
 }
 
@@ -100,7 +112,7 @@ TemporaryOutput::TemporaryOutput(Kind kind, const fs::path& target, const fs::pa
   const std::string name = target.filename().string();
   remove_abandoned(folder, name);
   for (;;) {
-    path_ = folder / (prefix + std::to_string(::getpid()) + "-" + std::to_string(serial++) + "-" + name);   // with the extension, by which some writers choose their format
+    path_ = folder / (prefix() + std::to_string(::getpid()) + "-" + std::to_string(serial++) + "-" + name);   // with the extension, by which some writers choose their format
     if (make(kind, path_)) {
       // Until it is locked another program may take it for abandoned.
       const Lock lock = try_lock(path_, lock_);

@@ -3,8 +3,8 @@
 
 namespace priormap {
 
-/// A new file or directory `.tmp-PID-N-NAME` in which an output NAME is made. As long as this object lives it holds a lock (flock) on it, and the kernel lets go of that however the
-/// program ends: what no program holds was left by one that was killed, and the next program that makes the same output removes it. On file systems
+/// A new file or directory `.tmp-HOST-PID-N-NAME` in which an output NAME is made. As long as this object lives it holds a lock (flock) on it, and the kernel lets go of that however the
+/// program ends: what no program holds was left by one that was killed, and the next program on this host that makes the same output removes it. On file systems
 /// without locks it stays.
 class TemporaryOutput {
  public:

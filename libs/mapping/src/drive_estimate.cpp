@@ -146,15 +146,19 @@ class DriveGraph {
     return graph.marginals();
   }
 
-  /// Adds what all poses have in common: `common` is of one place, and those that have no piece of the prior in sight in common are averaged, since the odometry ties them.
-  void add_common(CommonVariance common, std::vector<Matrix6d>& covariances) const {
-    const double num_places = static_cast<double>(places_apart(2 * options_.range_m));
-    common.position_m2 /= num_places;
-    common.yaw_rad2 /= num_places;
-    for (std::size_t k = 0; k < size(); ++k) {
-      const Eigen::Matrix3d R = poses_[k].linear();
-      covariances[k].topLeftCorner<3, 3>() += common.yaw_rad2 * R.row(2).transpose() * R.row(2);
-      covariances[k].bottomRightCorner<3, 3>() += R.transpose() * common.position_m2.asDiagonal() * R;
+  /// Adds what poses have in common: `common` is of one place, and places that have no piece of the prior in sight in common are averaged where the odometry ties them.
+  /// @param held  poses that the prior holds
+  void add_common(const CommonVariance& common, const std::vector<bool>& held, std::vector<Matrix6d>& covariances) const {
+    for (std::size_t begin = 0; begin < size();) {
+      std::size_t end = begin + 1;
+      while (end < size() && !record(end).odometry.began_anew) ++end;
+      const double num_places = static_cast<double>(places_apart(begin, end, held));
+      for (std::size_t k = begin; k < end; ++k) {
+        const Eigen::Matrix3d R = poses_[k].linear();
+        covariances[k].topLeftCorner<3, 3>() += common.yaw_rad2 / num_places * R.row(2).transpose() * R.row(2);
+        covariances[k].bottomRightCorner<3, 3>() += R.transpose() * (common.position_m2 / num_places).asDiagonal() * R;
+      }
+      begin = end;
     }
   }
 
@@ -196,12 +200,15 @@ class DriveGraph {
   }
 
  private:
-  /// How many places along the drive lie that far from each other.
-  std::size_t places_apart(double distance_m) const {
+  /// How many of the held poses [begin, end) are out of each other's sight; one at least. What a whole source has in common no drive averages out, hence the bound.
+  std::size_t places_apart(std::size_t begin, std::size_t end, const std::vector<bool>& held) const {
+    constexpr std::size_t most = 10;
     std::vector<Eigen::Vector3d> places;
-    for (const Eigen::Isometry3d& pose : poses_)
-      if (std::ranges::all_of(places, [&](const Eigen::Vector3d& p) { return (p - pose.translation()).norm() >= distance_m; })) places.push_back(pose.translation());
-    return places.size();
+    for (std::size_t k = begin; k < end && places.size() < most; ++k) {
+      const Eigen::Vector3d& here = poses_[k].translation();
+      if (held[k] && std::ranges::all_of(places, [&](const Eigen::Vector3d& p) { return (p - here).norm() >= 2 * options_.range_m; })) places.push_back(here);
+    }
+    return std::max<std::size_t>(places.size(), 1);
   }
   static Matrix6d symmetric(const Matrix6d& m) { return 0.5 * (m + m.transpose()); }
   const Eigen::Isometry3d& T_odom(std::size_t k) const { return records_[keyframes_[k].record].odometry.T_odom_sensor; }
@@ -252,8 +259,9 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
     marginals = graph.estimate(pieces, sigmas, last ? least_gain : least_gain_before, weights);
     if (!last) sigmas = pieces.estimated_sigmas(stated, sigmas, marginals.pieces, weights);
   }
-  graph.add_common(pieces.common_variance(sigmas, {how.common_share, how.wall_common_share, how.ground_common_share}), marginals.poses);
-  if (prior && known_height_m) graph.doubt_heights(*known_height_m, marginals.poses);
+  const std::vector<bool> held = pieces.held(graph.size());
+  graph.add_common(pieces.common_variance(sigmas, {how.common_share, how.wall_common_share, how.ground_common_share}), held, marginals.poses);
+  if (known_height_m && held.front()) graph.doubt_heights(*known_height_m, marginals.poses);
   const std::vector<bool> contradicted = pieces.contradicted(graph.size());
   if (std::ranges::all_of(contradicted, std::identity()))   // nowhere is the drive known to be
     for (Matrix6d& covariance : marginals.poses) covariance += unknown_gap_covariance();

@@ -106,7 +106,8 @@ void PiecesOfPrior::add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const s
     const bool ground = piece.kind == PieceKind::ground;
     PlaneMatch heard = ground ? levelled(match) : match;
     if (stands_upright(piece.kind)) {
-      const double side = match.normal.dot(T_map_sensor.translation() - match.p_map) < 0 ? -1 : 1;   // walls are seen from outside
+      // Walls are seen from outside. Those of buildings were moved by their normals as they are.
+      const double side = piece.kind == PieceKind::wall && match.normal.dot(T_map_sensor.translation() - match.p_map) < 0 ? -1 : 1;
       piece.sum_of_normals += side * match.normal;
       piece.num_normals += 1;
       // Buildings were compared where they had been moved to, by their offsets and the outset.
@@ -143,13 +144,13 @@ void PiecesOfPrior::take_offsets(const PoseGraph& graph) {
 /// What the offsets of all pieces of a kind have in common along their outward normals is no offset of theirs. Few pieces do not tell it from chance.
 void PiecesOfPrior::take_outset(PieceKind kind) {
   constexpr double none_counts = 4;   // pieces that stand where they should, taken for granted
-  double inward_m = 0, count = none_counts;
+  double outward_m = 0, count = none_counts;
   for (const Piece& piece : pieces_) {
     if (piece.kind != kind) continue;
-    inward_m += piece.outward().dot(piece.offset_m);
+    outward_m += piece.outward().dot(piece.offset_m);
     count += piece.outward().squaredNorm();
   }
-  const double outset_m = -inward_m / count;
+  const double outset_m = -outward_m / count;   // offsets lead back to the real walls
   for (Piece& piece : pieces_)
     if (piece.kind == kind) piece.offset_m += outset_m * piece.outward();
   outset_m_[kind] += outset_m;
@@ -196,9 +197,15 @@ std::vector<bool> PiecesOfPrior::contradicted(std::size_t num_poses) const {
   return result;
 }
 
+std::vector<bool> PiecesOfPrior::held(std::size_t num_poses) const {
+  std::vector<bool> result(num_poses);
+  for (const PieceFactor& factor : factors_) result[factor.pose] = true;
+  return result;
+}
+
 CommonVariance PiecesOfPrior::common_variance(const PieceSigmas& sigmas, const PieceShares& shares) const {
   std::array<double, piece_kinds.size()> count{};
-  for (const Piece& piece : pieces_) count[static_cast<std::size_t>(piece.kind)] += 1;
+  for (const Piece& piece : pieces_) count[static_cast<std::size_t>(piece.kind)] += piece.times_seen > 0;
   // Told by sources that err each in its own way; each piece tells as much as its kind is sure.
   const auto common_to = [&](std::initializer_list<PieceKind> kinds, double share) {
     double information = 0, number = 0;

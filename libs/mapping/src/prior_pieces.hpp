@@ -81,6 +81,8 @@ class PiecesOfPrior {
   CommonVariance common_variance(const PieceSigmas& sigmas, const PieceShares& shares) const;
   /// Around which poses the prior's walls are not where the scans see walls: the poses are wrong, or the prior is of another place. What knows few walls contradicts nothing.
   std::vector<bool> contradicted(std::size_t num_poses) const;
+  /// Which poses were compared with pieces.
+  std::vector<bool> held(std::size_t num_poses) const;
   std::size_t size() const { return pieces_.size(); }
 
  private:

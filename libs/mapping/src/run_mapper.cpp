@@ -171,13 +171,18 @@ void warn_of_bad_start(const std::vector<MappedScan>& scans, const PriorPoints& 
   }
 }
 
+/// Of heights that were doubted because prior and start disagree.
 void warn_of_height_gap(const std::vector<MappedScan>& scans, const Start& start, const PriorPoints& prior, const Events& events) {
-  const double gap_m = scans.front().T_map_sensor.translation().z() - start.T_map_sensor.translation().z();
-  const bool in_prior = scans.front().verdict == Verdict::anchored || scans.front().verdict == Verdict::weak;
-  if (!start.knows_height || !in_prior || std::abs(gap_m) < usual_height_gap_m) return;
+  const MappedScan& first = scans.front();
+  const double gap_m = first.T_map_sensor.translation().z() - start.T_map_sensor.translation().z();
+  const Eigen::Vector3d up = first.T_map_sensor.linear().row(2);
+  const bool in_prior = first.verdict == Verdict::anchored || first.verdict == Verdict::weak;
+  const bool doubted = up.dot(first.covariance.bottomRightCorner<3, 3>() * up) >= gap_m * gap_m;
+  if (!start.knows_height || !in_prior || !doubted || std::abs(gap_m) < usual_height_gap_m) return;
   std::ostringstream text;
   text << std::fixed << std::setprecision(2) << prior.identity().name << " puts the start " << std::abs(gap_m) << " m " << (gap_m < 0 ? "lower" : "higher")
-       << " than the initial pose: one of both heights is off, no scan tells which, and the sigmas of all heights say so; --initial-lonlat without --initial-height trusts the prior";
+       << " than the initial pose: one of both heights is off, no scan tells which, and the sigmas of all heights say so";
+  if (start.crs) text << "; --initial-lonlat without --initial-height trusts the prior";
   events.warn(text.str());
 }
 
@@ -241,7 +246,7 @@ std::optional<RunSummary> run_mapper(const RunOptions& options, int threads, Ove
   return_freed_memory();
   warn_of_empty_scans(scans, *source, events);
   if (prior) warn_of_bad_start(scans, *prior, events);
-  if (prior && options.preset != "paper") warn_of_height_gap(scans, start, *prior, events);
+  if (prior) warn_of_height_gap(scans, start, *prior, events);
   times.estimate_s = watch.lap();
 
   RunSummary summary = summarise(scans);

@@ -1,5 +1,6 @@
 #include "run_report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -23,8 +24,12 @@ Json configuration(const RunFacts& facts) {
   return json;
 }
 
-/// Where no prior holds a pose, the first one is exact by definition: it makes the frame.
-std::string sigmas_from(const std::vector<MappedScan>& scans) { return scans.front().covariance.isZero() ? "first-pose" : "prior"; }
+/// Without a prior the first pose is exact by definition: it makes the frame. Where none was found in the prior, all is as sure as the start that was given.
+std::string sigmas_from(const std::vector<MappedScan>& scans) {
+  if (scans.front().covariance.isZero()) return "first-pose";
+  const auto in_prior = [](const MappedScan& scan) { return scan.verdict == Verdict::anchored || scan.verdict == Verdict::weak; };
+  return std::ranges::any_of(scans, in_prior) ? "prior" : "start";
+}
 
 Json frame(const Start& start, const std::vector<MappedScan>& scans) {
   const MapFrame& f = start.frame;

@@ -120,9 +120,9 @@ Start start_at_pose(const InitialPose& initial, const PriorPoints* prior, double
   const Eigen::Isometry3d T = initial.pose.empty() ? Eigen::Isometry3d::Identity() : pose_of(initial.pose);
   const Swapped swapped{{T.translation().y(), T.translation().x(), T.translation().z()}, "swap the first two numbers of --initial-pose: it takes the easting first"};
   if (prior) check_near(*prior, T.translation(), prior_radius_m, swapped);
-  if (!prior || !prior->crs()) return {MapFrame::local(), std::nullopt, T, true};
+  if (!prior || !prior->crs()) return {MapFrame::local(), std::nullopt, T, !initial.pose.empty()};
   const MapFrame frame = MapFrame::at(*prior->crs(), T.translation());
-  return {frame, prior->crs(), frame.pose_to_map(T), true};
+  return {frame, prior->crs(), frame.pose_to_map(T), !initial.pose.empty()};
 }
 
 }  // namespace

@@ -190,6 +190,31 @@ TEST(PriorPieces, WallsThatStandOutsideOnEverySideNarrowNoStreet) {
   EXPECT_NEAR(estimated.translation().y(), 0, 0.03);   // some 0.05 where nothing knows of the outset
 }
 
+TEST(PriorPieces, BuildingsDrawnAroundTheirRoofsAreLookedForFurtherIn) {
+  PiecesOfPrior pieces(20, 70);
+  const double outset_m = 0.4;
+  double prior_y = 10 - outset_m;   // of walls that stand at 10 m, to the left of a vehicle that knows where it is
+  for (int pass = 0; pass < 6; ++pass) {
+    pieces.clear_matches();
+    std::vector<PlaneMatch> walls;
+    for (std::uint32_t building = 0; building < 30; ++building)
+      for (const double up : {0.0, 2.0, 4.0}) walls.push_back({{2.0 * building - 30, 10, up}, {0, -1, 0}, prior_y - 10, 1e-4, building});
+    pieces.add(0, pose(0, 0, 0), walls, noise);
+    PoseGraph graph(PoseGraphOptions{.absolute_width = 0, .between_width = 0, .piece_width = 0});
+    graph.add_pose(pose(0, 0, 0));
+    graph.add_absolute(0, pose(0, 0, 0), 1e8 * Matrix6d::Identity());
+    pieces.add_to(graph, {{0.3, 0.3, 0.3, 0.1}});
+    graph.optimize();
+    pieces.take_offsets(graph);
+    PatchCloud patches;
+    patches.patches = {SurfacePatch{.mean = {0, static_cast<float>(10 - outset_m), 2}, .normal = {0, -1, 0}, .feature = 7}};
+    pieces.move_buildings(patches);
+    prior_y = static_cast<double>(patches.patches[0].mean.y());
+    EXPECT_NEAR(prior_y, 10, 0.1) << pass;   // as soon as it has been seen, and without swinging
+  }
+  EXPECT_NEAR(prior_y, 10, 0.02);
+}
+
 TEST_F(ShiftedWalls, TheSigmaOfTheWallsIsEstimatedFromTheirOffsets) {
   PoseGraph graph(PoseGraphOptions{.absolute_width = 0, .between_width = 0, .piece_width = 0});
   for (PoseId k = 0; k < 60; ++k) {

@@ -79,7 +79,7 @@ std::size_t drop_non_measurements(PointCloud& cloud) {
   kept.reserve(cloud.size());
   for (std::uint32_t i = 0; i < cloud.size(); ++i)
     if (is_measurement(cloud.xyz[i]) && (!timed || std::isfinite(cloud.time_s[i]))) kept.push_back(i);
-  if (const auto num_too_far = std::ranges::count_if(cloud.xyz, is_too_far); std::size_t(num_too_far) > kept.size()) kept.clear();
+  if (const auto num_too_far = std::ranges::count_if(cloud.xyz, is_too_far); num_too_far > std::ranges::count_if(cloud.xyz, is_measurement)) kept.clear();
   const std::size_t dropped = cloud.size() - kept.size();
   if (dropped) cloud = cloud.select(kept);
   return dropped;

@@ -33,7 +33,7 @@ struct ReadyScan {
 /// Keeps buffers from scan to scan: one a thread.
 using PrepareScan = std::function<ReadyScan(const Scan&)>;
 
-/// Reads a scan of the recording again, by its index.
+/// Reads a scan of the recording again, by its index; called by several threads at once.
 using ReadScan = std::function<Scan(std::size_t)>;
 
 /// Maps a sequence of scans against a prior, by one of two methods. The default: odometry by surfels, its keyframes compared with the prior, and at the end one estimate of the whole drive in which pieces of the prior may lie off.

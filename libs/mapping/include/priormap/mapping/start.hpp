@@ -19,9 +19,9 @@ struct InitialPose {
 
   template <class Visitor>
   void describe(Visitor& visit) {
-    visit("initial-pose", pose, {"x,y,z,qx,qy,qz,qw of the first scan in the prior's CRS (quaternion against its grid axes), or in its local frame"});
+    visit("initial-pose", pose, {"x,y,z,qx,qy,qz,qw of the first scan in the prior's CRS (quaternion against its grid axes), or in its local frame; heights of the drive are no surer than this one and the prior agree"});
     visit("initial-lonlat", lon_lat_deg, {"longitude,latitude of the first scan", "deg"});
-    visit("initial-height", height_m, {"height of the sensor at the first scan, in the prior's heights; not given: on the prior's ground", "m", -1000, 10000});
+    visit("initial-height", height_m, {"height of the sensor at the first scan, in the prior's heights; heights of the drive are no surer than this one and the prior agree; not given: on the prior's ground", "m", -1000, 10000});
     visit("initial-yaw", yaw_deg, {"direction of travel at the first scan, counter-clockwise from true east", "deg", -360, 360});
     visit("initial-heading", heading_deg, {"direction of travel at the first scan, clockwise from true north", "deg", -360, 360});
   }
