@@ -98,8 +98,8 @@ struct EstimateOptions {
   double ground_sigma_m = 0.1;
   double surface_sigma_m = 0.1;
   double ground_surface_sigma_m = 0.03;
-  double common_share = 0.09;
-  double wall_common_share = 0.54;
+  double common_share = 0.06;
+  double wall_common_share = 0.36;
   double ground_common_share = 0.03;
   double kernel_width = 3;
   double ground_kernel_width = 2.5;
