@@ -106,8 +106,8 @@ void PiecesOfPrior::add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const s
     const bool ground = piece.kind == PieceKind::ground;
     PlaneMatch heard = ground ? levelled(match) : match;
     if (stands_upright(piece.kind)) {
-      // Walls are seen from outside. Those of buildings were moved by their normals as they are.
-      const double side = piece.kind == PieceKind::wall && match.normal.dot(T_map_sensor.translation() - match.p_map) < 0 ? -1 : 1;
+      // Walls are seen from outside: what faces away is another wall's match.
+      const double side = match.normal.dot(T_map_sensor.translation() - match.p_map) < 0 ? -1 : 1;
       piece.sum_of_normals += side * match.normal;
       piece.num_normals += 1;
       // Buildings were compared where they had been moved to, by their offsets and the outset.

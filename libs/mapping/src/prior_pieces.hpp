@@ -64,7 +64,7 @@ class PiecesOfPrior {
   /// First: where the walls of each piece seem to lie, by comparisons with the prior as it is.
   void vote(const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches);
   void take_likeliest_offsets();
-  /// Moves buildings to where they are now thought to be: the prior to compare with next.
+  /// Moves buildings to where they are now thought to be: the prior to compare with next. Normals of their walls lead outward, as the prior builders write them.
   void move_buildings(PatchCloud& patches) const;
 
   void clear_matches();
