@@ -61,9 +61,9 @@ class ScansAgain {
   SurfelCloud surfels_of(const ScanRecord& record) {
     ScanReducer reducer = take();
     SurfelCloud surfels = reducer.reduce(read_(record.index).points);
+    undo_motion(surfels, record.odometry.velocity);
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(reducer));
-    undo_motion(surfels, record.odometry.velocity);
     return surfels;
   }
 

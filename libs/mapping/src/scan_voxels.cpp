@@ -3,13 +3,7 @@
 #include <algorithm>
 #include <array>
 
-// Compiled for AVX2 as well, and the loader takes what the processor has. Without fused multiply-add: the results are the same. (ThreadSanitizer is not there yet when the
-// loader asks.)
-#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__)
-#define PRIORMAP_ALSO_AVX2 __attribute__((target_clones("avx2", "default")))
-#else
-#define PRIORMAP_ALSO_AVX2
-#endif
+#include <priormap/core/also_avx2.hpp>
 
 namespace priormap {
 namespace {

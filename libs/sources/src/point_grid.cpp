@@ -6,15 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include <priormap/core/also_avx2.hpp>
 #include <priormap/geodesy/lattice.hpp>
-
-// Loops over a line are compiled for AVX2 as well, and the loader takes what the processor has. Without fused multiply-add: the results are the same. (ThreadSanitizer
-// is not there yet when the loader asks.)
-#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__)
-#define PRIORMAP_ALSO_AVX2 __attribute__((target_clones("avx2", "default")))
-#else
-#define PRIORMAP_ALSO_AVX2
-#endif
 
 namespace priormap {
 namespace {
