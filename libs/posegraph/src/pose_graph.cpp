@@ -366,24 +366,23 @@ Marginals PoseGraph::marginals() const {
   const std::vector<double> w_absolute = absolute_weights(), w_between = between_weights(), w_piece = piece_weights();
   constexpr double least = 1e-8;   // for directions that nothing constrains
   NormalMatrix normal(poses_without_anchor(w_absolute), pieces_.size());
-  for (std::size_t i = 0; i < size(); ++i) normal.add(i, i, least * Matrix6d::Identity());
+  for (std::size_t i = 0; i < size(); ++i) normal.add_pose(i, least * Matrix6d::Identity());
   for (std::size_t f = 0; f < absolute_.size(); ++f) {
     const AbsoluteFactor& factor = absolute_[f];
     const Matrix6d J = absolute_residual(factor.T_map_sensor, poses_[factor.id]).J;
-    normal.add(factor.id, factor.id, w_absolute[f] * J.transpose() * factor.information * J);
+    normal.add_pose(factor.id, w_absolute[f] * J.transpose() * factor.information * J);
   }
   for (std::size_t f = 0; f < between_.size(); ++f) {
     const BetweenFactor& factor = between_[f];
     const BetweenResidual e = between_residual(factor.T_a_b, poses_[factor.a], poses_[factor.b]);
     const Matrix6d information = w_between[f] * factor.information;
-    normal.add(factor.a, factor.a, e.J_a.transpose() * information * e.J_a);
-    normal.add(factor.b, factor.b, e.J_b.transpose() * information * e.J_b);
-    normal.add(factor.a, factor.b, e.J_a.transpose() * information * e.J_b);
-    normal.add(factor.b, factor.a, e.J_b.transpose() * information * e.J_a);
+    normal.add_pose(factor.a, e.J_a.transpose() * information * e.J_a);
+    normal.add_pose(factor.b, e.J_b.transpose() * information * e.J_b);
+    normal.add_tie(factor.a, factor.b, e.J_a.transpose() * information * e.J_b);
   }
-  for (std::size_t p = 0; p < pieces_.size(); ++p) normal.add(p, (w_piece[p] / pieces_[p].sigma_m.array().square()).matrix());
+  for (std::size_t p = 0; p < pieces_.size(); ++p) normal.add_piece(p, (w_piece[p] / pieces_[p].sigma_m.array().square()).matrix());
   for (const PieceFactor& factor : piece_factors_)
-    normal.add(factor.pose, factor.piece, factor.equations, absolute_residual(factor.T_map_sensor, poses_[factor.pose]).J);
+    normal.add_sight(factor.pose, factor.piece, factor.equations, absolute_residual(factor.T_map_sensor, poses_[factor.pose]).J);
   return normal.marginals();
 }
 

@@ -1,6 +1,7 @@
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/autodiff_manifold.h>
 #include <ceres/ceres.h>
+#include <ceres/rotation.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -78,7 +79,8 @@ struct AutoBetween {
     const Eigen::Map<const Eigen::Matrix<T, 3, 1>> ta(a + 4), tb(b + 4);
     const Eigen::Quaternion<T> turn = q_m.conjugate().cast<T>() * qa.conjugate() * qb;
     Eigen::Matrix<T, 6, 1> e;
-    e.template head<3>() = T(2) * turn.vec() / turn.w();  // equals the logarithm to second order
+    const T wxyz[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
+    ceres::QuaternionToAngleAxis(wxyz, e.data());
     e.template tail<3>() = q_m.conjugate().cast<T>() * (qa.conjugate() * (tb - ta) - t_m.cast<T>());
     Eigen::Map<Eigen::Matrix<T, 6, 1>>{r} = U.cast<T>() * e;
     return true;
@@ -91,6 +93,30 @@ struct AutoAbsolute {
   bool operator()(const T* x, T* r) const {
     const T identity[7] = {T(0), T(0), T(0), T(1), T(0), T(0), T(0)};
     return between(identity, x, r);
+  }
+};
+
+struct AutoPiece {
+  AutoBetween between;
+  Eigen::Matrix<double, 12, 9> J;
+  Eigen::Matrix<double, 12, 1> at_zero;
+  template <class T>
+  bool operator()(const T* x, const T* offset, T* r) const {
+    const T identity[7] = {T(0), T(0), T(0), T(1), T(0), T(0), T(0)};
+    Eigen::Matrix<T, 9, 1> z;
+    between(identity, x, z.data());
+    z.template tail<3>() = Eigen::Map<const Eigen::Matrix<T, 3, 1>>(offset);
+    Eigen::Map<Eigen::Matrix<T, 12, 1>>{r} = J.cast<T>() * z + at_zero.cast<T>();
+    return true;
+  }
+};
+
+struct AutoOffset {
+  Eigen::Vector3d sigma_m;
+  template <class T>
+  bool operator()(const T* offset, T* r) const {
+    for (int i = 0; i < 3; ++i) r[i] = offset[i] / T(sigma_m[i]);
+    return true;
   }
 };
 
@@ -135,6 +161,118 @@ TEST(PoseGraph, MarginalsEqualThoseOfCeres) {
     Eigen::Matrix<double, 6, 6, Eigen::RowMajor> expected;
     covariance.GetCovarianceBlockInTangentSpace(x[k].data(), x[k].data(), expected.data());
     EXPECT_LT((covariances[k] - expected).norm(), 1e-6 * expected.norm()) << "pose " << k;
+  }
+}
+
+/// A drive along pieces, each in sight of some poses, that turns back into its beginning; as the library takes it and as Ceres does.
+struct StreetOfPieces {
+  static constexpr std::size_t num_poses = 30, num_pieces = 20;
+  PoseGraphOptions options;
+  PoseGraph graph;
+  ceres::Problem problem;
+  std::vector<std::array<double, 7>> x{num_poses};
+  std::vector<Eigen::Vector3d> offsets{num_pieces, Eigen::Vector3d::Zero()};
+
+  explicit StreetOfPieces(const PoseGraphOptions& given) : options(given), graph(given) {
+    std::mt19937 random(8);
+    const auto truth = drive(num_poses);
+    for (std::size_t k = 0; k < num_poses; ++k) {
+      graph.add_pose(noisy(truth[k], random, 0.02, 0.3));
+      Eigen::Map<Eigen::Quaterniond>{x[k].data()} = Eigen::Quaterniond(graph.pose(k).linear());
+      Eigen::Map<Eigen::Vector3d>{x[k].data() + 4} = graph.pose(k).translation();
+      problem.AddParameterBlock(x[k].data(), 7, new ceres::AutoDiffManifold<AutoManifold, 7, 6>);
+      if (k > 0) add({k - 1, k, noisy(truth[k - 1].inverse() * truth[k], random, 0.002, 0.02), information(0.002, 0.02)});
+      if (k % 10 == 3) add(AbsoluteFactor{k, noisy(truth[k], random, 0.005, 0.1), information(0.005, 0.1)});
+    }
+    for (PieceId p = 0; p < num_pieces; ++p) {
+      add_piece(p, {0.3, 0.2, 0.1});
+      for (std::size_t k = p; k < p + 6; ++k) add(p, k, noisy(truth[k], random, 0.01, 0.1), random, p % 9 == 4 ? 2.0 : 0.1);
+      add(p, (p * 7) % num_poses, truth[(p * 7) % num_poses], random, 0.1);   // once more from elsewhere, or from the same pose
+    }
+  }
+
+  void add(const BetweenFactor& f) {
+    graph.add_between(f.a, f.b, f.T_a_b, f.information);
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AutoBetween, 6, 7, 7>(new AutoBetween(auto_between(f.T_a_b, f.information))),
+                             options.between_width > 0 ? new ceres::CauchyLoss(options.between_width) : nullptr, x[f.a].data(), x[f.b].data());
+  }
+  void add(const AbsoluteFactor& f) {
+    graph.add_absolute(f.id, f.T_map_sensor, f.information);
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AutoAbsolute, 6, 7>(new AutoAbsolute{auto_between(f.T_map_sensor, f.information)}),
+                             options.absolute_width > 0 ? new ceres::TukeyLoss(options.absolute_width) : nullptr, x[f.id].data());
+  }
+  void add_piece(PieceId p, const Eigen::Vector3d& sigma_m) {
+    graph.add_piece(sigma_m);
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AutoOffset, 3, 3>(new AutoOffset{sigma_m}), options.piece_width > 0 ? new ceres::CauchyLoss(options.piece_width) : nullptr,
+                             offsets[p].data());
+  }
+  /// Distances along twelve normals, as of walls around. @param off_m  by which the piece stands elsewhere
+  void add(PieceId p, PoseId k, const Eigen::Isometry3d& T, std::mt19937& random, double off_m) {
+    std::normal_distribution<double> n;
+    constexpr double per_sigma = 20;
+    AutoPiece distances{auto_between(T, Matrix6d::Identity()), {}, {}};
+    for (int i = 0; i < 12; ++i) {
+      const Eigen::Vector3d normal = Eigen::Vector3d(n(random), n(random), n(random)).normalized(), point(10 * n(random), 10 * n(random), n(random));
+      distances.J.row(i) << per_sigma * point.cross(normal).transpose(), per_sigma * normal.transpose(), -per_sigma * (T.linear() * normal).transpose();
+      distances.at_zero[i] = per_sigma * off_m * (T.linear() * normal).x();
+    }
+    const Eigen::Matrix<double, 9, 9> H = distances.J.transpose() * distances.J;
+    const Vector9d g = distances.J.transpose() * distances.at_zero;
+    graph.add_piece_factor(k, p, T, {H.cast<float>(), g.cast<float>()});
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<AutoPiece, 12, 7, 3>(new AutoPiece(distances)), nullptr, x[k].data(), offsets[p].data());
+  }
+};
+
+TEST(PoseGraph, PosesAndPiecesAreEstimatedAsByCeres) {
+  StreetOfPieces street({.absolute_width = 8, .between_width = 4, .piece_width = 2, .max_iterations = 200});
+  const OptimizeSummary ours = street.graph.optimize(1e-12);
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.function_tolerance = 1e-12;
+  options.parameter_tolerance = 1e-14;
+  options.max_num_iterations = 200;
+  ceres::Solver::Summary theirs;
+  ceres::Solve(options, &street.problem, &theirs);
+  ASSERT_TRUE(ours.converged);
+  ASSERT_EQ(theirs.termination_type, ceres::CONVERGENCE);
+  EXPECT_NEAR(ours.initial_cost, theirs.initial_cost, 1e-6 * theirs.initial_cost);
+  EXPECT_NEAR(ours.final_cost, theirs.final_cost, 1e-6 * theirs.final_cost);
+  EXPECT_LT(ours.final_cost, 0.5 * ours.initial_cost);
+  double farthest_m = 0;
+  for (std::size_t k = 0; k < street.num_poses; ++k) {
+    EXPECT_LT((street.graph.pose(k).translation() - Eigen::Map<const Eigen::Vector3d>(street.x[k].data() + 4)).norm(), 1e-5) << "pose " << k;
+    EXPECT_LT(Eigen::Quaterniond(street.graph.pose(k).linear()).angularDistance(Eigen::Map<const Eigen::Quaterniond>(street.x[k].data())), 1e-6) << "pose " << k;
+  }
+  for (PieceId p = 0; p < street.num_pieces; ++p) {
+    EXPECT_LT((street.graph.pieces()[p].offset_m - street.offsets[p]).norm(), 1e-5) << "piece " << p;
+    farthest_m = std::max(farthest_m, street.offsets[p].norm());
+  }
+  EXPECT_GT(farthest_m, 0.5);   // far out in the kernel
+}
+
+TEST(PoseGraph, MarginalsOfPosesAndPiecesEqualThoseOfCeres) {
+  StreetOfPieces street({.absolute_width = 0, .between_width = 0, .piece_width = 0});
+  street.graph.optimize(1e-14);
+  for (std::size_t k = 0; k < street.num_poses; ++k) {
+    Eigen::Map<Eigen::Quaterniond>{street.x[k].data()} = Eigen::Quaterniond(street.graph.pose(k).linear());
+    Eigen::Map<Eigen::Vector3d>{street.x[k].data() + 4} = street.graph.pose(k).translation();
+  }
+  for (PieceId p = 0; p < street.num_pieces; ++p) street.offsets[p] = street.graph.pieces()[p].offset_m;
+  const Marginals marginals = street.graph.marginals();
+  std::vector<std::pair<const double*, const double*>> wanted;
+  for (auto& pose : street.x) wanted.emplace_back(pose.data(), pose.data());
+  for (auto& offset : street.offsets) wanted.emplace_back(offset.data(), offset.data());
+  ceres::Covariance covariance({});
+  ASSERT_TRUE(covariance.Compute(wanted, &street.problem));
+  for (std::size_t k = 0; k < street.num_poses; ++k) {
+    Eigen::Matrix<double, 6, 6, Eigen::RowMajor> expected;
+    covariance.GetCovarianceBlockInTangentSpace(street.x[k].data(), street.x[k].data(), expected.data());
+    EXPECT_LT((marginals.poses[k] - expected).norm(), 1e-4 * expected.norm()) << "pose " << k;
+  }
+  for (PieceId p = 0; p < street.num_pieces; ++p) {
+    Eigen::Matrix<double, 3, 3, Eigen::RowMajor> expected;
+    covariance.GetCovarianceBlock(street.offsets[p].data(), street.offsets[p].data(), expected.data());
+    EXPECT_LT((marginals.pieces[p] - expected).norm(), 1e-4 * expected.norm()) << "piece " << p;
   }
 }
 
