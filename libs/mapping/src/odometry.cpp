@@ -7,6 +7,11 @@
 #include "sweep_motion.hpp"
 
 namespace priormap {
+namespace {
+
+Eigen::Vector3d turn_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) { return log_so3(Eigen::Quaterniond(a.linear().transpose() * b.linear())); }
+
+}  // namespace
 
 /// Ground fits ground anywhere: a scan of another street has more than half its planes fit. But never as they did in the scans before.
 bool UsualFit::admit(const TargetResult& match, bool after_loss) const {
@@ -34,25 +39,6 @@ double Odometry::time_since_last(double stamp_s) const {
   return duration_s > 0 ? std::min(duration_s, longest_s) : usual_s;
 }
 
-/// The motion carried on; or with another pitch and roll, where the scan fits better so: a platform that rocks turns back as often as it turns on. Its yaw stays: the rings of
-/// the lasers on the ground fit best where nothing has turned.
-Eigen::Isometry3d Odometry::better_guess(const SurfelCloud& scan, double duration_s) {
-  constexpr double rocking_rad = 0.01, blur_m = 0.3;
-  const Eigen::Isometry3d carried = moved_on(T_odom_last_, velocity_, duration_s);
-  const Eigen::Vector3d turn = log_so3(Eigen::Quaterniond(T_odom_last_.linear().transpose() * carried.linear()));
-  if (turn.head<2>().norm() < rocking_rad) return carried;
-  const std::array targets = {JointTarget{&local_map_, options_.local_sigma_m, 1.0}};
-  Eigen::Isometry3d best = carried;
-  double best_score = registration_.score(scan, targets, carried, blur_m);
-  for (const double share : {0.75, 0.5, 0.25, 0.0, -0.25, -0.5, -0.75, -1.0}) {
-    Eigen::Isometry3d other = carried;
-    other.linear() = T_odom_last_.linear() * exp_so3({share * turn.x(), share * turn.y(), turn.z()}).toRotationMatrix();
-    const double score = registration_.score(scan, targets, other, blur_m);
-    if (score > best_score) best_score = score, best = other;
-  }
-  return best;
-}
-
 OdometryStep Odometry::matched(const SurfelCloud& scan, const Eigen::Isometry3d& guess) {
   const std::array targets = {JointTarget{&local_map_, options_.local_sigma_m, 1.0}};
   const JointResult match = registration_.align(scan, targets, guess);
@@ -66,14 +52,32 @@ OdometryStep Odometry::matched(const SurfelCloud& scan, const Eigen::Isometry3d&
   return found;
 }
 
+/// Where the motion carried on leads; but a platform that rocks turns back as often as it turns on: there any tilt it may have come to is tried, for the rings of the lasers on the ground fit
+/// where nothing has turned, though the scan as a whole fits worse. For their sake the yaw stays as carried on.
+OdometryStep Odometry::matched_after(const SurfelCloud& scan, double duration_s) {
+  constexpr double least_rad = 0.01, margin = 1.5, widest_rad = 0.15;
+  const Eigen::Isometry3d carried = moved_on(T_odom_last_, velocity_, duration_s);
+  if (rocking_rad_ < least_rad) return matched(scan, carried);
+  Eigen::Isometry3d upright = carried;
+  upright.linear() = T_odom_last_.linear() * exp_so3({0, 0, turn_between(T_odom_last_, carried).z()}).toRotationMatrix();
+  PoseSearchOptions tilts;
+  tilts.radius_m = tilts.yaw_rad = 0;
+  tilts.tilt_rad = std::min(margin * rocking_rad_, widest_rad);
+  tilts.refined = 3;
+  const std::array targets = {JointTarget{&local_map_, options_.local_sigma_m, 1.0}};
+  OdometryStep found = matched(scan, registration_.search(scan, targets, upright, tilts).front().match.T_map_scan);
+  if (!found.joined) found.T_odom_sensor = carried;
+  return found;
+}
+
 /// The sweep is straightened by the motion so far, and once more where the match shows another.
 OdometryStep Odometry::matched_in_motion(SurfelCloud& scan, double duration_s) {
   constexpr double least_m = 0.01, range_m = 30;
   const double longest_s = longest_time_s(scan);
-  if (longest_s == 0) return matched(scan, better_guess(scan, duration_s));
+  if (longest_s == 0) return matched_after(scan, duration_s);
   const SurfelCloud raw = scan;
   undo_motion(scan, velocity_);
-  const OdometryStep found = matched(scan, better_guess(scan, duration_s));
+  const OdometryStep found = matched_after(scan, duration_s);
   if (!found.joined || num_lost_ > 0) return found;   // after a loss the way since the last match tells no steady motion
   const Vector6d velocity = steady_velocity(T_odom_last_, found.T_odom_sensor, duration_s), change = velocity - velocity_;
   if (longest_s * (change.tail<3>().norm() + range_m * change.head<3>().norm()) < least_m) return found;
@@ -96,6 +100,7 @@ OdometryStep Odometry::found_again(const SurfelCloud& scan) {
 
 OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
   constexpr int give_up_after = 100;
+  constexpr double fading = 0.9;   // a scan
   OdometryStep found;
   found.T_odom_sensor = T_odom_last_;
   if (local_map_.empty()) {
@@ -115,10 +120,13 @@ OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
     } else {
       fits_.take(found.figures);
     }
-    if (found.began_anew)
+    if (found.began_anew) {
       velocity_.setZero();
-    else if (num_lost_ == 0)
+      rocking_rad_ = unknown_rocking_rad;
+    } else if (num_lost_ == 0) {
       velocity_ = steady_velocity(T_odom_last_, found.T_odom_sensor, duration_s);
+      rocking_rad_ = std::max(turn_between(T_odom_last_, found.T_odom_sensor).head<2>().norm(), fading * rocking_rad_);
+    }
     num_lost_ = 0;
     T_odom_last_ = found.T_odom_sensor;
   }

@@ -38,21 +38,23 @@ class Odometry {
   Odometry(const OdometryOptions& options, const Vector6d& first_velocity);
   /// @param scan  as the moving sensor saw it; on return as it would have been seen from where the sensor was at the stamp
   OdometryStep step(SurfelCloud& scan, double stamp_s);
-  void exchange(StateArchive& archive) { archive(local_map_, T_odom_last_, stamp_last_s_, velocity_, fits_, num_lost_); }
+  void exchange(StateArchive& archive) { archive(local_map_, T_odom_last_, stamp_last_s_, velocity_, rocking_rad_, fits_, num_lost_); }
 
  private:
   double time_since_last(double stamp_s) const;
-  Eigen::Isometry3d better_guess(const SurfelCloud& scan, double duration_s);
   OdometryStep matched(const SurfelCloud& scan, const Eigen::Isometry3d& guess);
+  OdometryStep matched_after(const SurfelCloud& scan, double duration_s);
   OdometryStep matched_in_motion(SurfelCloud& scan, double duration_s);
   OdometryStep found_again(const SurfelCloud& scan);
 
+  static constexpr double unknown_rocking_rad = 0.07;
   OdometryOptions options_;
   JointRegistration registration_;
   SurfelMap local_map_;
   Eigen::Isometry3d T_odom_last_;   // of the last scan that was matched,
   double stamp_last_s_ = 0;
   Vector6d velocity_;               // and there
+  double rocking_rad_ = unknown_rocking_rad;   // most that roll and pitch change from scan to scan, of late
   UsualFit fits_;
   int num_lost_ = 0;
 };

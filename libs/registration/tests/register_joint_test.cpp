@@ -68,6 +68,24 @@ TEST_F(JointRegistrationTest, PointsWithoutNormalsHoldTheScanToo) {
   EXPECT_LT(street::distance(result.T_map_scan, truth), 0.1);
 }
 
+/// Where nothing has turned, the rings of the lasers on the ground lie on those of the scan before: there a registration stays; a search does not.
+TEST(JointRegistrationOfRings, OfTheScanBeforeHideATiltUnlessItIsSearched) {
+  const street::World world = street::wide_street();
+  const Eigen::Isometry3d before = street::pose(0, 0, 1.2, 0);
+  Eigen::Isometry3d tilted = before;
+  tilted.linear() = exp_so3({-0.03, 0.04, 0}).toRotationMatrix();
+  SurfelMap map;
+  map.insert(ScanReducer(1.0).reduce(street::scan(world, before, street::hdl32, 1)), before);
+  const SurfelCloud scan = ScanReducer(1.0).reduce(street::scan(world, tilted, street::hdl32, 2));
+  const JointTarget target{&map};
+  JointRegistration registration;
+  EXPECT_LT(street::angle(registration.align(scan, {&target, 1}, before).T_map_scan, before), 0.01);
+  PoseSearchOptions tilts;
+  tilts.radius_m = tilts.yaw_rad = 0;
+  tilts.tilt_rad = 0.1;
+  EXPECT_LT(street::angle(registration.search(scan, {&target, 1}, before, tilts).front().match.T_map_scan, tilted), 0.01);
+}
+
 TEST(JointRegistrationInACanyon, TheInformationSaysThatAlongTheStreetNothingIsKnown) {
   const street::World world = street::canyon();
   SurfelMap prior;

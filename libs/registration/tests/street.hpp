@@ -59,6 +59,15 @@ inline World town(double length, unsigned seed, const Eigen::Vector3d& origin = 
   return world;
 }
 
+/// Houses far from the road: most of a scan is ground.
+inline World wide_street() {
+  World world;
+  world.add_ground(-100, -100, 100, 100);
+  for (const double side : {-1.0, 1.0})
+    for (int i = -3; i <= 3; ++i) world.add_box(20 * i + 5 * side, side * (25 + std::abs(i) % 2), 12 + i, 10, 7, 0.03 * i);
+  return world;
+}
+
 /// Two endless walls and a road: nothing tells where along it one is.
 inline World canyon() {
   World world;
@@ -91,6 +100,9 @@ struct Laser {
   double lowest_rad = -0.43, highest_rad = 0.035, range_m = 100;
   double noise_m = 0.02;
 };
+
+/// A HDL-32: so many points a ring that the rings are lines.
+constexpr Laser hdl32{.rings = 32, .columns = 2100, .lowest_rad = -0.535, .highest_rad = 0.186, .noise_m = 0.015};
 
 /// One scan in the sensor's frame.
 inline PointCloud scan(const World& world, const Eigen::Isometry3d& T_map_sensor, const Laser& laser, unsigned seed) {
