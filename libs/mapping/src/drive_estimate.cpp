@@ -4,16 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <mutex>
+#include <memory>
 #include <utility>
 
 #include <priormap/core/parallel.hpp>
-#include <priormap/registration/scan_reducer.hpp>
 
 #include "confidence.hpp"
 #include "prior_pieces.hpp"
 #include "prior_surfels.hpp"
-#include "sweep_motion.hpp"
+#include "scans_again.hpp"
 
 namespace priormap {
 namespace {
@@ -52,35 +51,6 @@ std::vector<Keyframe> keyframes_of(const std::vector<ScanRecord>& records, const
   }
   return keyframes;
 }
-
-/// Scans of the drive, read again and reduced; by several threads at once.
-class ScansAgain {
- public:
-  ScansAgain(const ReadScan& read, double reduce_m) : read_(read), reduce_m_(reduce_m) {}
-
-  SurfelCloud surfels_of(const ScanRecord& record) {
-    ScanReducer reducer = take();
-    SurfelCloud surfels = reducer.reduce(read_(record.index).points);
-    undo_motion(surfels, record.odometry.velocity);
-    const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(reducer));
-    return surfels;
-  }
-
- private:
-  ScanReducer take() {
-    const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return ScanReducer(reduce_m_);
-    ScanReducer reducer = std::move(idle_.back());
-    idle_.pop_back();
-    return reducer;
-  }
-
-  const ReadScan& read_;
-  double reduce_m_;
-  std::mutex mutex_;
-  std::vector<ScanReducer> idle_;
-};
 
 /// Compares scans with the prior where they are thought to have been taken.
 class PriorComparison {
@@ -232,13 +202,14 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
   PieceSigmas sigmas = stated;
   Marginals marginals;
   std::vector<double> weights;
-  ScansAgain scans(read_again, options.reduce_m);
+  constexpr std::size_t room_bytes = 64 << 20;   // some kilometres of keyframes; memory does not grow with the length of a drive
+  ScansAgain scans(read_again, options.reduce_m, graph.size(), room_bytes);
   const auto compare = [&](auto&& take) {
     PriorComparison comparison(*prior, pieces, options);
-    std::vector<SurfelCloud> ready(graph.size());
+    std::vector<std::shared_ptr<const SurfelCloud>> ready(graph.size());
     ordered_pipeline(
-        graph.size(), prior->threads(), 2 * static_cast<std::size_t>(prior->threads()), [&](std::size_t k) { ready[k] = scans.surfels_of(graph.record(k)); },
-        [&](std::size_t k) { take(k, graph.pose(k), comparison.at(std::exchange(ready[k], {}), graph.pose(k))); });
+        graph.size(), prior->threads(), 2 * static_cast<std::size_t>(prior->threads()), [&](std::size_t k) { ready[k] = scans.surfels_of(k, graph.record(k)); },
+        [&](std::size_t k) { take(k, graph.pose(k), comparison.at(*std::exchange(ready[k], {}), graph.pose(k))); });
     return comparison.stated_building_sigma_m();
   };
   if (prior) {
