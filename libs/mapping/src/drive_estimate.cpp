@@ -197,7 +197,9 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
   const EstimateOptions& how = options.estimate;
   center_velocities(records);
   DriveGraph graph(records, how);
-  PiecesOfPrior pieces(how.piece_m, how.range_m);
+  LengthsByKind expected_outset_m{};
+  if (prior && prior->points().identity().sees_roofs) expected_outset_m[PieceKind::wall] = how.roof_overhang_m;
+  PiecesOfPrior pieces(how.piece_m, how.range_m, expected_outset_m);
   const PieceSigmas stated = {{how.building_sigma_m, how.wall_sigma_m, how.slope_sigma_m, how.ground_sigma_m}};
   PieceSigmas sigmas = stated;
   Marginals marginals;

@@ -12,6 +12,8 @@ namespace priormap {
 class OffsetVotes {
  public:
   void add(const PlaneMatch& match);
+  /// A voice for no offset.
+  void add_dissent() { all_ += 1; }
   /// In map axes, up to 2.5 m each way in steps of 0.25 m; where walls leave a choice, the nearest to none.
   Eigen::Vector3d likeliest() const;
   float most() const { return *std::max_element(votes_.begin(), votes_.end()); }   ///< voices for one offset,

@@ -59,7 +59,8 @@ struct CommonVariance {
 /// counts once, however many there are.
 class PiecesOfPrior {
  public:
-  PiecesOfPrior(double piece_m, double range_m) : piece_m_(piece_m), range_m_(range_m) {}
+  /// @param expected_outset_m  by which the walls of each kind are thought to stand outside of the real ones, give or take 0.1 m
+  PiecesOfPrior(double piece_m, double range_m, const LengthsByKind& expected_outset_m = {});
 
   /// First: where the walls of each piece seem to lie, by comparisons with the prior as it is.
   void vote(const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches);
@@ -100,7 +101,8 @@ class PiecesOfPrior {
   std::optional<PieceId> piece_of(const PlaneMatch& match, const Eigen::Vector3d& sensor);
   void take_outset(PieceKind kind);
   double piece_m_, range_m_;
-  LengthsByKind outset_m_{};   // by which walls stand outside of the real ones on every side: outlines of roofs, steps of a surface model
+  LengthsByKind expected_outset_m_;
+  LengthsByKind outset_m_;   // by which walls stand outside of the real ones on every side: outlines of roofs, steps of a surface model
   std::map<PieceKey, PieceId> ids_;
   std::vector<Piece> pieces_;
   std::map<PieceId, OffsetVotes> votes_;

@@ -61,8 +61,10 @@ class StoredPrior : public PriorPoints {
     lookup_.emplace(store_, units());
     identity_ = {directory.filename().empty() ? directory.parent_path().filename().string() : directory.filename().string(), sha256_file(directory / "prior.json"),
                  store_.manifest().num_points, {}};
-    for (const auto& source : store_.manifest().sources)
+    for (const auto& source : store_.manifest().sources) {
       if (!source.attribution.empty()) identity_.attributions.push_back(source.attribution);
+      identity_.sees_roofs |= source.kind == "raster" && std::ranges::count(source.facts, std::pair<std::string, std::string>("kind", "surface")) > 0;
+    }
   }
 
   const std::optional<Crs>& crs() const override { return crs_; }

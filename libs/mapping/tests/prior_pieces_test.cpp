@@ -45,16 +45,81 @@ TEST(PriorPieces, WhatStraysFromTheKnownOffsetIsAnOutlier) {
   EXPECT_NEAR(equations_of(match, T, {1, 0, 0}, 0.1, 3).H(3, 3), 100, 1e-3);
 }
 
+/// What a scan sees of a wall with that level normal: a metre of it, as flat as `spread_m`.
+PlaneMatch wall_match(const Eigen::Vector3d& p, const Eigen::Vector3d& facing, double residual_m, std::uint32_t feature, double spread_m = 0.01) {
+  const Eigen::Vector3d along = Eigen::Vector3d::UnitZ().cross(facing);
+  const double variance = spread_m * spread_m;
+  PlaneMatch match{p, facing, residual_m, variance, feature};
+  match.plane_mean = p - residual_m * facing;
+  match.scan_covariance = (along * along.transpose() + Eigen::Vector3d::UnitZ() * Eigen::RowVector3d::UnitZ()) / 12 + variance * facing * facing.transpose();
+  return match;
+}
+
 TEST(PriorPieces, TheWallsOfABuildingAreOnePieceThoseOfNoneOneACell) {
   const auto pieces_of = [](std::uint32_t feature) {
     PiecesOfPrior pieces(20, 70);
     std::vector<PlaneMatch> walls;
-    for (const double x : {5.0, 15.0, 25.0, 45.0}) walls.push_back({{x, 8, 3}, {0, 1, 0}, 0.1, 1e-4, feature});
+    for (const double x : {5.0, 15.0, 25.0, 45.0}) walls.push_back(wall_match({x, 8, 3}, {0, 1, 0}, 0.1, feature));
     pieces.add(0, pose(10, 0, 0), walls, noise);
     return pieces.size();
   };
   EXPECT_EQ(pieces_of(7), 1u);
   EXPECT_EQ(pieces_of(PointCloud::no_feature), 3u);
+}
+
+/// The attitude is known, the place is not.
+Matrix6d level_information() {
+  Matrix6d information = 1e-4 * Matrix6d::Identity();
+  information.topLeftCorner<3, 3>() = 1e10 * Eigen::Matrix3d::Identity();
+  return information;
+}
+
+/// A wall at 30 degrees to the grid of a surface model is a stair of its cells: the scan knows how it faces, and that leaves are no wall.
+TEST(PriorPieces, HowAWallOfNoFeatureFacesTheScanTells) {
+  const Eigen::Vector3d facing = Eigen::Vector3d(-std::cos(0.5), std::sin(0.5), 0);
+  const auto equations = [&](const PlaneMatch& match) {
+    PiecesOfPrior pieces(20, 70);
+    pieces.add(0, pose(0, 0, 0), {match}, noise);
+    PoseGraph graph;
+    graph.add_pose(pose(0, 0, 0));
+    graph.add_absolute(0, pose(0, 0, 0), level_information());
+    pieces.add_to(graph, {{0.3, 0.3, 0.3, 0.3}});
+    graph.optimize();
+    return std::pair(pieces.size(), Eigen::Vector3d(graph.pose(0).translation() - pose(0, 0, 0).translation()));
+  };
+  PlaneMatch step = wall_match({20, 0, 2}, facing, 0.2, PointCloud::no_feature);
+  step.normal = Eigen::Vector3d(-1, 0, 0);   // of the cell's edge
+  step.scan_variance_m2 = step.scan_covariance(0, 0);
+  const auto [count, moved] = equations(step);
+  EXPECT_EQ(count, 1u);
+  EXPECT_GT(moved.norm(), 0.1);
+  EXPECT_LT(moved.cross(facing).norm(), 1e-3);   // across the wall, not the cell
+  PlaneMatch other = step;
+  other.normal = Eigen::Vector3d(0, 1, 0);
+  EXPECT_EQ(equations(other).first, 0u);
+  EXPECT_EQ(equations(wall_match({20, 0, 2}, facing, 0.2, PointCloud::no_feature, 0.12)).first, 0u);   // leaves
+  PlaneMatch trunk = step;
+  trunk.scan_covariance = Eigen::Vector3d(1e-3, 1e-3, 0.1).asDiagonal();
+  trunk.scan_variance_m2 = 1e-3;
+  EXPECT_EQ(equations(trunk).first, 0u);
+}
+
+/// Houses on one side of a road leave open whether they stand outside of themselves or the road lies elsewhere: then the overhang of roofs is taken for what it usually is.
+TEST(PriorPieces, OnOneSideAloneWallsStandAsFarOutsideAsExpected) {
+  const auto moved_m = [](double expected_m) {
+    LengthsByKind outset_m{};
+    outset_m[PieceKind::wall] = expected_m;
+    PiecesOfPrior pieces(20, 70, outset_m);
+    pieces.add(0, pose(0, 0, 0), {wall_match({0, 10, 2}, {0, -1, 0}, -0.2, PointCloud::no_feature)}, noise);   // 0.2 m behind the edge of the roof
+    PoseGraph graph;
+    graph.add_pose(pose(0, 0, 0));
+    graph.add_absolute(0, pose(0, 0, 0), level_information());
+    pieces.add_to(graph, {{0.3, 0.3, 0.3, 0.3}});
+    graph.optimize();
+    return (graph.pose(0).translation() - pose(0, 0, 0).translation()).norm();
+  };
+  EXPECT_GT(moved_m(0), 0.15);
+  EXPECT_LT(moved_m(0.2), 0.01);
 }
 
 PlaneMatch ground_match(double x, double y, double z, double spread_m = 0.03) { return {{x, y, z}, {0, 0, 1}, 0.0, spread_m * spread_m}; }
@@ -117,12 +182,31 @@ TEST(PriorPieces, WallsThatAreNotWhereScansSeeWallsContradict) {
   EXPECT_TRUE(contradicted(false));
 }
 
+/// Where a scan sees walls that face otherwise than those of a surface model, it is not the place: however well those fit that happen to face alike.
+TEST(PriorPieces, WallsThatFaceOtherwiseContradict) {
+  const auto contradicted = [](int alike_of_ten) -> bool {
+    PiecesOfPrior pieces(20, 70);
+    std::vector<PlaneMatch> walls;
+    for (int i = 0; i < 400; ++i) {
+      walls.push_back(wall_match({10, 8, 2}, i % 2 ? Eigen::Vector3d(1, 0, 0) : Eigen::Vector3d(0, 1, 0), 0.01 * (i % 7), PointCloud::no_feature));
+      if (i % 10 >= alike_of_ten) walls.back().normal = Eigen::Vector3d(std::sqrt(0.5), std::sqrt(0.5), 0);
+      walls.back().scan_variance_m2 = walls.back().normal.dot(walls.back().scan_covariance * walls.back().normal);
+    }
+    pieces.vote(pose(0, 0, 0), walls);
+    pieces.take_likeliest_offsets();
+    pieces.add(0, pose(0, 0, 0), walls, noise);
+    return pieces.contradicted(1).front();
+  };
+  EXPECT_FALSE(contradicted(8));
+  EXPECT_TRUE(contradicted(3));
+}
+
 TEST(PriorPieces, WhatAllPiecesOfAKindHaveInCommonNoNumberOfThemAveragesOut) {
   const PieceSigmas sigmas = {{0.4, 0.3, 0.3, 0.1}};
   const PieceShares shares = {0.25, 0.16, 0.01};
   PiecesOfPrior none(20, 70), raster(20, 70), both(20, 70);
   EXPECT_TRUE(none.common_variance(sigmas, shares).position_m2.isZero());
-  const PlaneMatch wall{{10, 8, 2}, {1, 0, 0}, 0.0, 1e-4}, ground = ground_match(10, 0, 0), building{{10, 8, 2}, {1, 0, 0}, 0.0, 1e-4, 7};
+  const PlaneMatch wall = wall_match({10, 8, 2}, {1, 0, 0}, 0.0, PointCloud::no_feature), ground = ground_match(10, 0, 0), building{{10, 8, 2}, {1, 0, 0}, 0.0, 1e-4, 7};
   raster.add(0, pose(0, 0, 0), {wall, ground}, noise);
   EXPECT_TRUE(raster.common_variance(sigmas, shares).position_m2.isApprox(Eigen::Vector3d(0.0144, 0.0144, 1e-4)));
   both.add(0, pose(0, 0, 0), {wall, building}, noise);
@@ -147,7 +231,7 @@ class ShiftedWalls : public testing::Test {
     std::vector<PlaneMatch> matches;
     for (std::size_t w = 0; w < shifts.size(); ++w)
       for (const auto& normal : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)})
-        for (const double up : {0.0, 2.0, 4.0}) matches.push_back({{x + 5, piece_m * static_cast<double>(w) - 45, up}, normal, normal.x() != 0 ? -shifts[w] : 0.0, 1e-4});
+        for (const double up : {0.0, 2.0, 4.0}) matches.push_back(wall_match({x + 5, piece_m * static_cast<double>(w) - 45, up}, normal, normal.x() != 0 ? -shifts[w] : 0.0, PointCloud::no_feature));
     pieces_.add(k, pose(x, 0, 0), matches, noise);
   }
 };
@@ -181,7 +265,7 @@ TEST(PriorPieces, WallsThatStandOutsideOnEverySideNarrowNoStreet) {
     pieces.add(0, estimated, walls, noise);
     PoseGraph graph(PoseGraphOptions{.absolute_width = 0, .between_width = 0, .piece_width = 0});
     graph.add_pose(estimated);
-    graph.add_absolute(0, pose(0, 0, 0), 1e-4 * Matrix6d::Identity());
+    graph.add_absolute(0, pose(0, 0, 0), level_information());
     pieces.add_to(graph, {{0.3, 0.3, 0.3, 0.1}});
     graph.optimize();
     estimated = graph.pose(0);

@@ -37,12 +37,14 @@ struct SourceColumns {
     }
   }
 
-  /// Variance of the points of surfel `i` along a direction in sensor axes.
-  double spread(std::size_t i, const Eigen::Vector3d& direction) const {
+  /// Of the points of surfel `i`, in sensor axes.
+  Eigen::Matrix3d covariance(std::size_t i) const {
     SymmetricRow<double> covariance;
     for (std::size_t k = 0; k < 6; ++k) covariance[Eigen::Index(k)] = double(columns[3 + k][i]);
-    return std::max(0.0, direction.dot(full_of(covariance) * direction));
+    return full_of(covariance);
   }
+  /// Variance of the points of surfel `i` along a direction in sensor axes.
+  double spread(std::size_t i, const Eigen::Vector3d& direction) const { return std::max(0.0, direction.dot(covariance(i) * direction)); }
 
   kernels::Source view() const {
     const auto& c = columns;
@@ -132,6 +134,8 @@ class TargetState {
       PlaneMatch match{corner + at(x), at(normal_x), at(normal_x).dot(at(x) - at(mean_x)), 0};
       match.scan_variance_m2 = double(source.columns[9][i]) + source.spread(i, R.transpose() * match.normal);
       match.feature = view_->feature(block_[i], entry_[i]);
+      match.plane_mean = corner + at(mean_x);
+      match.scan_covariance = R * source.covariance(i) * R.transpose();
       matches.push_back(match);
     }
     return matches;

@@ -99,26 +99,55 @@ class LatticeArea {
 class WallBuilder {
  public:
   WallBuilder(const PointGrid& grid, const StepWalls& walls, const LatticeArea& area, const LasPoint& common, std::vector<LasPoint>& points)
-      : grid_(grid), walls_(walls), area_(area), common_(common), points_(points), across_(grid.across.normalized().cast<float>()), back_(grid.back.normalized().cast<float>()) {}
+      : grid_(grid), walls_(walls), area_(area), common_(common), points_(points), length_(static_cast<std::ptrdiff_t>(grid.length)), gradient_(gradient_of(grid)) {}
 
   bool is_to_next_line(std::size_t place) const { return is_between(place, place + grid_.length); }
   bool is_to_place_before(std::size_t place) const { return is_between(place, place - 1); }
-  void add_to_next_line(std::size_t place) { add(place, place + grid_.length, across_); }
-  void add_to_place_before(std::size_t place) { add(place, place - 1, back_); }
+  void add_to_next_line(std::size_t place) { add(place, length_, {1, 0}); }
+  void add_to_place_before(std::size_t place) { add(place, -1, {0, 1}); }
 
  private:
   bool is_between(std::size_t a, std::size_t b) const { return std::abs(grid_.z[b] - grid_.z[a]) > walls_.least_step; }
 
-  /// From the lowest point up. @param way  a unit vector in the plane, from neighbour `a` to `b`
-  void add(std::size_t a, std::size_t b, const Eigen::Vector2f& way) {
+  /// From steps along (across, back) to those along (x, y), times a constant.
+  static Eigen::Matrix2f gradient_of(const PointGrid& grid) {
+    Eigen::Matrix2d steps;
+    steps << grid.across, grid.back;
+    return (std::abs(steps.determinant()) * steps.inverse().transpose()).cast<float>();
+  }
+
+  /// Towards what is low around a wall, in (across, back) of the grid: what the 16 places within two cells say that are higher or lower than the middle of the wall. Where they
+  /// show no edge that faces as the wall does (a corner, a tree), its own two places say it.
+  Eigen::Vector2f outward(std::size_t a, std::ptrdiff_t to_b, const Eigen::Vector2f& way) const {
+    constexpr float least_facing = 0.15f;   // a wall at any angle to the grid is a stair of steps in both of its directions
+    const std::size_t b = a + static_cast<std::size_t>(to_b);
+    const float downhill = grid_.z[b] < grid_.z[a] ? 1.0f : -1.0f;
+    const double middle = 0.5 * (grid_.z[a] + grid_.z[b]);
+    const std::ptrdiff_t aside = to_b == length_ ? -1 : length_;
+    Eigen::Vector2f low = Eigen::Vector2f::Zero();   // along the wall's way, and aside
+    for (std::ptrdiff_t i = -1; i <= 2; ++i) {
+      const std::ptrdiff_t widest = i == 0 || i == 1 ? 2 : 1;
+      for (std::ptrdiff_t j = -widest; j <= widest; ++j) {
+        const double z = grid_.z[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(a) + i * to_b + j * aside)];
+        const float sign = z < middle ? 1.0f : z > middle ? -1.0f : 0.0f;
+        low += sign * Eigen::Vector2f(static_cast<float>(i) - 0.5f, static_cast<float>(j));
+      }
+    }
+    if (downhill * low.x() <= least_facing * low.norm()) low = {downhill, 0};
+    return low.x() * way + low.y() * Eigen::Vector2f(way.y(), way.x());
+  }
+
+  /// From the lowest point up. @param to_b  from place `a` to its neighbour   @param way  the same in (across, back)
+  void add(std::size_t a, std::ptrdiff_t to_b, const Eigen::Vector2f& way) {
+    const std::size_t b = a + static_cast<std::size_t>(to_b);
     const double step = grid_.z[b] - grid_.z[a];
     const double x = lattice_steps(0.5 * (grid_.x[a] + grid_.x[b])), y = lattice_steps(0.5 * (grid_.y[a] + grid_.y[b]));
     if (!area_.contains(x, y)) return;
     LasPoint wall = common_;
     wall.x = area_.x_steps(x);
     wall.y = area_.y_steps(y);
-    const float outward = step < 0 ? 1.0f : -1.0f;
-    wall.set_normal({outward * way.x(), outward * way.y(), 0});
+    const Eigen::Vector2f normal = (gradient_ * outward(a, to_b, way)).normalized();
+    wall.set_normal({normal.x(), normal.y(), 0});
     const auto count = static_cast<std::size_t>(std::max(1.0, std::round(std::abs(step) / walls_.rise)));
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t part = step < 0 ? count - 1 - i : i;
@@ -132,7 +161,8 @@ class WallBuilder {
   const LatticeArea& area_;
   const LasPoint& common_;
   std::vector<LasPoint>& points_;
-  Eigen::Vector2f across_, back_;
+  std::ptrdiff_t length_;
+  Eigen::Matrix2f gradient_;
 };
 
 /// Adds the points of places [first, last) of a line.
@@ -163,15 +193,16 @@ void PointGrid::resize(std::size_t new_lines, std::size_t new_length) {
 
 void points_of_grid(const PointGrid& grid, const std::optional<StepWalls>& walls, const Bounds2& area, const LasPoint& common,
                     const std::function<void(std::vector<LasPoint>& points)>& visit) {
-  if (grid.lines < 3 || grid.length < 3) return;
+  constexpr std::size_t margin = PointGrid::margin;
+  if (grid.lines <= 2 * margin || grid.length <= 2 * margin) return;
   constexpr std::size_t enough = 512;   // stay in the fastest cache
   std::vector<LasPoint> points;
   const LatticeArea lattice(area);
   const NormalRule normals(grid);
   std::optional<WallBuilder> builder;
   if (walls) builder.emplace(grid, *walls, lattice, common, points);
-  LineSteps line(grid.length - 2);
-  for (std::size_t i = grid.length + 1; i + grid.length < grid.size(); i += grid.length) {
+  LineSteps line(grid.length - 2 * margin);
+  for (std::size_t i = margin * (grid.length + 1); i + margin * grid.length < grid.size(); i += grid.length) {
     lattice.positions_of_line(&grid.x[i], &grid.y[i], &grid.z[i], line);
     normals.of_line(&grid.z[i], line);
     const std::size_t count = line.z.size();
@@ -192,12 +223,13 @@ void points_of_grid(const PointGrid& grid, const std::optional<StepWalls>& walls
 }
 
 void walls_of_grid(const PointGrid& grid, const StepWalls& walls, const Bounds2& area, const LasPoint& common, const std::function<void(std::vector<LasPoint>& points)>& visit) {
-  if (grid.lines < 3 || grid.length < 3) return;
+  constexpr std::size_t margin = PointGrid::margin;
+  if (grid.lines <= 2 * margin || grid.length <= 2 * margin) return;
   std::vector<LasPoint> points;
   const LatticeArea lattice(area);
   WallBuilder builder(grid, walls, lattice, common, points);
-  for (std::size_t line = grid.length; line + grid.length < grid.size(); line += grid.length)
-    for (std::size_t place = line + 1; place + 1 < line + grid.length; ++place) {
+  for (std::size_t line = margin * grid.length; line + margin * grid.length < grid.size(); line += grid.length)
+    for (std::size_t place = line + margin; place + margin < line + grid.length; ++place) {
       if (builder.is_to_place_before(place)) builder.add_to_place_before(place);
       if (builder.is_to_next_line(place)) builder.add_to_next_line(place);
     }

@@ -19,7 +19,7 @@ namespace priormap {
 namespace {
 
 /// Cells along the edge of one grid; and of a patch with normals of its own orientation, in another CRS, where it reaches no farther than this. A stripe from north to south stays in the cache.
-constexpr int grid_edge = 512, patch_edge = 128, stripe_width = 32;
+constexpr int grid_edge = 512, patch_edge = 128, stripe_width = 32, margin = static_cast<int>(PointGrid::margin);
 constexpr double patch_extent = 2048;
 
 /// Transforms positions with a height in place; where that fails the height is lost.
@@ -162,10 +162,10 @@ class CellSampling {
     }
   }
 
-  /// One cell more on each side, where the raster has one.
+  /// With the margin of a grid, as far as the raster goes.
   CellWindow grown(const CellWindow& w) const {
-    const int left = std::max(0, w.col - 1), top = std::max(0, w.row - 1);
-    const int right = std::min(raster_.facts().width, w.col + w.width + 1), bottom = std::min(raster_.facts().height, w.row + w.height + 1);
+    const int left = std::max(0, w.col - margin), top = std::max(0, w.row - margin);
+    const int right = std::min(raster_.facts().width, w.col + w.width + margin), bottom = std::min(raster_.facts().height, w.row + w.height + margin);
     return {left, top, right - left, bottom - top};
   }
 
@@ -183,13 +183,13 @@ class CellSampling {
   }
 
   void fill_grid(const CellWindow& window) {
-    grid_.resize(static_cast<std::size_t>(window.width) + 2, static_cast<std::size_t>(window.height) + 2);
+    grid_.resize(static_cast<std::size_t>(window.width + 2 * margin), static_cast<std::size_t>(window.height + 2 * margin));
     const Eigen::Affine2d& world_from_cell = raster_.world_from_cell();
     grid_.across = world_from_cell.linear().col(0);
     grid_.back = world_from_cell.linear().col(1);
-    const int south = window.row + window.height;   // the first place of each line
+    const int south = window.row + window.height + margin - 1;   // the first place of each line
     for (std::size_t line = 0; line < grid_.lines; ++line) {
-      const int col = window.col - 1 + static_cast<int>(line), held_col = col - held_.col;
+      const int col = window.col - margin + static_cast<int>(line), held_col = col - held_.col;
       double *x = &grid_.x[line * grid_.length], *y = &grid_.y[line * grid_.length], *z = &grid_.z[line * grid_.length];
       for (std::size_t i = 0; i < grid_.length; ++i) {
         const Eigen::Vector2d p = world_from_cell * Eigen::Vector2d(col + 0.5, south - static_cast<int>(i) + 0.5);
@@ -248,12 +248,12 @@ class LatticeSampling {
 
  private:
   void fill_grid(std::int64_t first_i, std::int64_t first_j, std::int64_t width, std::int64_t height) {
-    grid_.resize(static_cast<std::size_t>(width) + 2, static_cast<std::size_t>(height) + 2);
+    grid_.resize(static_cast<std::size_t>(width + 2 * margin), static_cast<std::size_t>(height + 2 * margin));
     grid_.across = {spacing_, 0};
     grid_.back = {0, -spacing_};
     std::size_t k = 0;
-    for (std::int64_t i = first_i - 1; i <= first_i + width; ++i) {
-      for (std::int64_t j = first_j - 1; j <= first_j + height; ++j, ++k) {
+    for (std::int64_t i = first_i - margin; i < first_i + width + margin; ++i) {
+      for (std::int64_t j = first_j - margin; j < first_j + height + margin; ++j, ++k) {
         grid_.x[k] = (static_cast<double>(i) + 0.5) * spacing_;
         grid_.y[k] = (static_cast<double>(j) + 0.5) * spacing_;
         grid_.z[k] = raster_.at(grid_.x[k], grid_.y[k]).value_or(std::numeric_limits<double>::quiet_NaN());

@@ -107,9 +107,29 @@ TEST_F(RasterPointsTest, a_house_gets_walls_halfway_between_the_cells_that_face_
     const Eigen::Vector3d outward = wall.p - middle;
     EXPECT_NEAR(std::max(std::abs(outward.x()) / 2, std::abs(outward.y()) / 1.5), 1, 1e-6) << wall.p.transpose();
     EXPECT_GT(wall.normal.cast<double>().dot(outward), 1.4);
-    EXPECT_NEAR(wall.normal.norm(), 1, 1e-6);
+    EXPECT_NEAR(wall.normal.norm(), 1, 3e-5);
     EXPECT_NEAR(std::abs(std::remainder(wall.p.z(), 1)), 0.5, 1e-6);
     EXPECT_LT(std::abs(outward.z()), 5);
+  }
+}
+
+// Across the grid a wall is a stair of cells, and yet it faces one way.
+TEST_F(RasterPointsTest, a_wall_across_the_grid_faces_across_itself) {
+  for (const double angle : {0.0, 0.15, 0.4, 0.785, 1.2}) {
+    const Eigen::Vector3f facing(static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0);
+    const auto walls = walls_of(read(write({.value = [&](double col, double row) { return std::cos(angle) * (col - 5.2) - std::sin(angle) * (row - 4.4) < 0 ? 9.0 : 1.0; }}), utm, utm, std::nullopt, 1e4, 1.5));
+    ASSERT_GT(walls.size(), 40u);
+    std::size_t count = 0;
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (const Point& wall : walls) {
+      const Eigen::Vector3d p = wall.p - Eigen::Vector3d(500000, 5000000, 0);
+      if (p.x() < 3 || p.x() > 7 || p.y() > -3 || p.y() < -5) continue;   // within two cells of the raster's edge it sees half
+      EXPECT_GT(wall.normal.dot(facing), 0.9f) << angle << ": " << wall.normal.transpose();
+      sum += wall.normal;
+      ++count;
+    }
+    ASSERT_GT(count, 0u);
+    EXPECT_GT(sum.normalized().dot(facing), 0.96f) << angle;
   }
 }
 

@@ -21,6 +21,7 @@ struct PriorIdentity {
   std::string sha256;     ///< of prior.json or of the cloud's file
   std::uint64_t num_points = 0;
   std::vector<std::string> attributions;   ///< of its sources, as their licences ask
+  bool sees_roofs = false;   ///< its walls without a feature are steps of a surface model, which stand at the edges of roofs
 };
 
 /// A prior as tiles of points in its CRS (or in a local metric frame), wherever they come from. Const members are thread-safe.

@@ -77,6 +77,8 @@ struct PlaneMatch {
   double residual_m = 0;      ///< of p_map from the plane
   double scan_variance_m2 = 0;   ///< of the residual, by the scan: its point noise, and its own spread along the normal
   std::uint32_t feature = PointCloud::no_feature;   ///< of the plane
+  Eigen::Vector3d plane_mean = Eigen::Vector3d::Zero();        ///< of the points by which the plane is known
+  Eigen::Matrix3d scan_covariance = Eigen::Matrix3d::Zero();   ///< of the surfel's points [m^2], in the axes of the target
 };
 
 struct JointResult {
