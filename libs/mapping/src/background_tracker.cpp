@@ -28,7 +28,10 @@ std::optional<PriorMatch> BackgroundTracker::follow(const Eigen::Isometry3d& T_o
   }
   if (!surfels || !tracker_.asks(T_odom_sensor)) return heard;
   const bool waits = tracker_.is_fresh();
-  asking_ = std::async(std::launch::async, [this, scan = surfels(), T_odom_sensor] { return tracker_.follow(scan, T_odom_sensor); });
+  if (threads_ > 1)
+    asking_ = std::async(std::launch::async, [this, scan = surfels(), T_odom_sensor] { return tracker_.follow(scan, T_odom_sensor); });
+  else
+    word_ = tracker_.follow(surfels(), T_odom_sensor);
   if (waits) return hear();
   scans_until_heard_ = heard_after;
   return heard;

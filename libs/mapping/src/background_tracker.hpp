@@ -14,7 +14,8 @@ namespace priormap {
 /// took: what comes out does not depend on timing. The first scan of a drive waits for the word: it says where the drive begins.
 class BackgroundTracker {
  public:
-  explicit BackgroundTracker(PriorTracker tracker) : tracker_(std::move(tracker)), T_map_odom_(tracker_.T_map_odom()) {}
+  /// @param threads  1: asked in the caller's thread, with the same result
+  BackgroundTracker(PriorTracker tracker, int threads) : tracker_(std::move(tracker)), threads_(threads), T_map_odom_(tracker_.T_map_odom()) {}
   ~BackgroundTracker();
   BackgroundTracker(const BackgroundTracker&) = delete;
   BackgroundTracker& operator=(const BackgroundTracker&) = delete;
@@ -26,13 +27,15 @@ class BackgroundTracker {
   void begin_anew();
   /// By what has been heard.
   const Eigen::Isometry3d& T_map_odom() const { return T_map_odom_; }
+  /// Ends what is being asked. @throws what asking threw
+  void wait();
   void exchange(StateArchive& archive);
 
  private:
-  void wait();
   std::optional<PriorMatch> hear();
 
   PriorTracker tracker_;
+  int threads_;
   Eigen::Isometry3d T_map_odom_;
   int scans_until_heard_ = 0;               // 0: nothing was asked
   std::optional<PriorMatch> word_;          // of what was asked, once it is said

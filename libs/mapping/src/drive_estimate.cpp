@@ -199,7 +199,7 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
   DriveGraph graph(records, how);
   LengthsByKind expected_outset_m{};
   if (prior && prior->points().identity().sees_roofs) expected_outset_m[PieceKind::wall] = how.roof_overhang_m;
-  PiecesOfPrior pieces(how.piece_m, how.range_m, expected_outset_m);
+  PiecesOfPrior pieces(how.piece_m, how.range_m, expected_outset_m, options.reduce_m);
   const PieceSigmas stated = {{how.building_sigma_m, how.wall_sigma_m, how.slope_sigma_m, how.ground_sigma_m}};
   PieceSigmas sigmas = stated;
   Marginals marginals;
@@ -215,7 +215,7 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
     return comparison.stated_building_sigma_m();
   };
   if (prior) {
-    const double building_sigma_m = compare([&](std::size_t, const Eigen::Isometry3d& T, const std::vector<PlaneMatch>& matches) { pieces.vote(T, matches); });
+    const double building_sigma_m = compare([&](std::size_t k, const Eigen::Isometry3d& T, const std::vector<PlaneMatch>& matches) { pieces.vote(k, T, matches); });
     sigmas[PieceKind::building] = std::max(how.building_sigma_m, building_sigma_m);
     pieces.take_likeliest_offsets();
   }

@@ -19,7 +19,7 @@ class JointMethod : public MappingMethod {
  public:
   JointMethod(const JointMethodOptions& options, const std::optional<NearTiles>& prior, const FirstPose& first)
       : options_(options), prior_(prior), known_height_m_(first.knows_height ? std::optional(first.T_map_sensor.translation().z()) : std::nullopt), first_velocity_(steady_velocity(Eigen::Isometry3d::Identity(), first.motion, first.motion_s)), reducer_(options.reduce_m),
-        odometry_(options.odometry, first_velocity_), tracker_(PriorTracker(options.tracking, options.reduce_m, prior, first.T_map_sensor)) {}
+        odometry_(options.odometry, first_velocity_), tracker_(PriorTracker(options.tracking, options.reduce_m, prior, first.T_map_sensor), prior ? prior->threads() : 1) {}
 
   PrepareScan preparation() const override {
     return [reducer = ScanReducer(options_.reduce_m)](const Scan& scan) mutable { return ReadyScan{facts_of(scan), reducer.reduce(scan.points), {}, {}}; };
@@ -45,7 +45,10 @@ class JointMethod : public MappingMethod {
         [&](std::size_t i) { placed(join(stretches[i], *std::exchange(driven[i], std::nullopt), wanted.source)); });
   }
 
-  std::vector<EstimatedPose> finish(const ReadScan& read_again) override { return estimate_drive(records_, prior_, read_again, options_, known_height_m_); }
+  std::vector<EstimatedPose> finish(const ReadScan& read_again) override {
+    tracker_.wait();
+    return estimate_drive(records_, prior_, read_again, options_, known_height_m_);
+  }
 
   void exchange(StateArchive& archive) override { archive(odometry_, T_odom_own_, tracker_, last_match_, records_); }
 

@@ -32,20 +32,19 @@ PlaneMatch levelled(PlaneMatch match) {
   return match;
 }
 
-/// Which way a vertical surface runs, by a surfel of it: its level normal. None where the surfel is too short to tell, or no plane.
-std::optional<Eigen::Vector3d> facing_of(const PlaneMatch& match) {
-  constexpr double least_length_m = 0.2;
+/// Which way a vertical surface runs, by a surfel of it: its level normal. None where its points spread too little along it to tell.
+std::optional<Eigen::Vector3d> facing_of(const PlaneMatch& match, double least_spread_m) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> level(match.scan_covariance.topLeftCorner<2, 2>());
-  if (level.eigenvalues()[1] < least_length_m * least_length_m) return std::nullopt;
+  if (level.eigenvalues()[1] < least_spread_m * least_spread_m) return std::nullopt;
   return Eigen::Vector3d(level.eigenvectors()(0, 0), level.eigenvectors()(1, 0), 0);
 }
 
 /// Walls that belong to no feature are steps of a surface model or points of a cloud: they tell where a wall is, the scan that sees it how it faces. None where the scan sees no wall
 /// but trunks or leaves.
-std::optional<PlaneMatch> as_seen(PlaneMatch match) {
+std::optional<PlaneMatch> as_seen(PlaneMatch match, double least_spread_m) {
   constexpr double most_spread_m = 0.08;
   if (match.feature != PointCloud::no_feature || !is_wall(match.normal.z())) return match;
-  const auto facing = facing_of(match);
+  const auto facing = facing_of(match, least_spread_m);
   if (!facing) return std::nullopt;
   const Eigen::Vector3d normal = std::copysign(1.0, facing->dot(match.normal)) * *facing;
   match.scan_variance_m2 += normal.dot(match.scan_covariance * normal) - match.normal.dot(match.scan_covariance * match.normal);
@@ -87,8 +86,8 @@ PieceEquations equations_of(const PlaneMatch& match, const Eigen::Isometry3d& T_
   return {(weight * J * J.transpose()).cast<float>(), (weight * match.residual_m * J).cast<float>()};
 }
 
-PiecesOfPrior::PiecesOfPrior(double piece_m, double range_m, const LengthsByKind& expected_outset_m)
-    : piece_m_(piece_m), range_m_(range_m), expected_outset_m_(expected_outset_m), outset_m_(expected_outset_m) {}
+PiecesOfPrior::PiecesOfPrior(double piece_m, double range_m, const LengthsByKind& expected_outset_m, double surfel_m)
+    : piece_m_(piece_m), range_m_(range_m), least_spread_m_(0.2 * surfel_m), expected_outset_m_(expected_outset_m), outset_m_(expected_outset_m) {}
 
 std::optional<PieceId> PiecesOfPrior::piece_of(const PlaneMatch& match, const Eigen::Vector3d& sensor) {
   if ((match.p_map - sensor).squaredNorm() > range_m_ * range_m_) return std::nullopt;
@@ -99,13 +98,14 @@ std::optional<PieceId> PiecesOfPrior::piece_of(const PlaneMatch& match, const Ei
   return found->second;
 }
 
-void PiecesOfPrior::vote(const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches) {
+void PiecesOfPrior::vote(PoseId k, const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches) {
   const Eigen::Vector3d& sensor = T_map_sensor.translation();
   for (const PlaneMatch& match : matches) {
     if (!is_wall(match.normal.z())) continue;
-    auto heard = as_seen(match);
+    auto heard = as_seen(match, least_spread_m_);
     const auto id = heard ? piece_of(*heard, sensor) : std::nullopt;
     if (!id) continue;
+    heard_[k].insert(*id);
     heard->residual_m += side_of(*heard, sensor) * outset_m_[pieces_[*id].kind];
     if (faces_alike(match, *heard))
       votes_[*id].add(*heard);
@@ -145,7 +145,7 @@ void PiecesOfPrior::add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const s
   std::map<PieceId, PieceEquations> equations;
   const Eigen::Vector3d& sensor = T_map_sensor.translation();
   for (const PlaneMatch& match : matches) {
-    const auto seen = as_seen(match);
+    const auto seen = as_seen(match, least_spread_m_);
     const auto id = seen && faces_alike(match, *seen) ? piece_of(*seen, sensor) : std::nullopt;
     if (!id) continue;
     Piece& piece = pieces_[*id];
@@ -225,12 +225,11 @@ std::vector<bool> PiecesOfPrior::contradicted(std::size_t num_poses) const {
   constexpr std::size_t around = 10;         // poses before and after
   constexpr double least_voices = 300;
   constexpr double building_agreement = 0.5, wall_agreement = 0.4;   // towns agree by 0.70 to 0.83 and 0.47 to 0.64, wrong places by 0.28 to 0.38 and 0.19 to 0.34
-  std::vector<std::vector<PieceId>> seen(num_poses);
-  for (const PieceFactor& factor : factors_) seen[factor.pose].push_back(factor.piece);
   std::vector<bool> result(num_poses);
   for (std::size_t k = 0; k < num_poses; ++k) {
     std::set<PieceId> pieces;
-    for (std::size_t j = k < around ? 0 : k - around; j < std::min(num_poses, k + around + 1); ++j) pieces.insert(seen[j].begin(), seen[j].end());
+    for (std::size_t j = k < around ? 0 : k - around; j < std::min(num_poses, k + around + 1); ++j)
+      if (const auto heard = heard_.find(j); heard != heard_.end()) pieces.insert(heard->second.begin(), heard->second.end());
     double voices = 0, surplus = 0;
     for (const PieceId id : pieces) {
       const Piece& piece = pieces_[id];

@@ -4,6 +4,7 @@
 #include <compare>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include <priormap/posegraph/pose_graph.hpp>
@@ -59,11 +60,11 @@ struct CommonVariance {
 /// counts once, however many there are.
 class PiecesOfPrior {
  public:
-  /// @param expected_outset_m  by which the walls of each kind are thought to stand outside of the real ones, give or take 0.1 m
-  PiecesOfPrior(double piece_m, double range_m, const LengthsByKind& expected_outset_m = {});
+  /// @param expected_outset_m  by which the walls of each kind are thought to stand outside of the real ones, give or take 0.1 m   @param surfel_m  edge of the voxels that scans are reduced to
+  PiecesOfPrior(double piece_m, double range_m, const LengthsByKind& expected_outset_m = {}, double surfel_m = 1);
 
   /// First: where the walls of each piece seem to lie, by comparisons with the prior as it is.
-  void vote(const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches);
+  void vote(PoseId k, const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches);
   void take_likeliest_offsets();
   /// Moves buildings to where they are now thought to be: the prior to compare with next. Normals of their walls lead outward, as the prior builders write them.
   void move_buildings(PatchCloud& patches) const;
@@ -100,12 +101,13 @@ class PiecesOfPrior {
   /// The piece that a comparison is with; none where it tells nothing.
   std::optional<PieceId> piece_of(const PlaneMatch& match, const Eigen::Vector3d& sensor);
   void take_outset(PieceKind kind);
-  double piece_m_, range_m_;
+  double piece_m_, range_m_, least_spread_m_;
   LengthsByKind expected_outset_m_;
   LengthsByKind outset_m_;   // by which walls stand outside of the real ones on every side: outlines of roofs, steps of a surface model
   std::map<PieceKey, PieceId> ids_;
   std::vector<Piece> pieces_;
   std::map<PieceId, OffsetVotes> votes_;
+  std::map<PoseId, std::set<PieceId>> heard_;   // of which piece each pose had a voice, for or against
   std::vector<PieceFactor> factors_;
 };
 

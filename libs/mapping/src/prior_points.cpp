@@ -63,7 +63,7 @@ class StoredPrior : public PriorPoints {
                  store_.manifest().num_points, {}};
     for (const auto& source : store_.manifest().sources) {
       if (!source.attribution.empty()) identity_.attributions.push_back(source.attribution);
-      identity_.sees_roofs |= source.kind == "raster" && std::ranges::count(source.facts, std::pair<std::string, std::string>("kind", "surface")) > 0;
+      identity_.sees_roofs |= source.kind == "raster" && std::ranges::any_of(source.facts, [](const auto& fact) { return fact.first == "wall_points" && fact.second != "0"; });
     }
   }
 

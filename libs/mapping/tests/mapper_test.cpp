@@ -238,7 +238,7 @@ Scan swept(Scan scan, const Vector6d& velocity) {
 /// Cut off after any scan and gone on with in a mapper of its own, a drive ends as if it had not been.
 TEST_F(Street, AMapperGoesOnFromItsState) {
   const test::TiledPoints tiles(world_, 10);
-  const NearTiles prior(tiles, MapFrame::local(), 20);   // tiles come and go
+  const NearTiles prior(tiles, MapFrame::local(), 20, 2);   // tiles come and go; asked in a thread of its own
   std::vector<Scan> drive;
   for (int k = 0; k < num_scans; ++k) drive.push_back(swept(scan_from(length_m, truth(k), static_cast<std::size_t>(k)), steady_velocity(truth(k), truth(k + 1), 0.1)));
   const auto read = [&](std::size_t k) { return drive[k]; };

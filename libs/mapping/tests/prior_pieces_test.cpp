@@ -156,7 +156,7 @@ TEST(PriorPieces, ABuildingIsLookedForWhereItHadBeenSeen) {
   std::vector<PlaneMatch> walls;
   for (const double up : {0.0, 2.0, 4.0})
     for (const auto& normal : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) walls.push_back({{10, 8, up}, normal, 1.5 * normal.x(), 1e-4, 7});
-  pieces.vote(pose(0, 0, 0), walls);
+  pieces.vote(0, pose(0, 0, 0), walls);
   pieces.take_likeliest_offsets();
   PatchCloud patches;
   patches.patches = {SurfacePatch{.mean = {8.5f, 8, 2}, .normal = {1, 0, 0}, .feature = 7}, SurfacePatch{.mean = {8.5f, 8, 2}, .normal = {1, 0, 0}},
@@ -173,7 +173,7 @@ TEST(PriorPieces, WallsThatAreNotWhereScansSeeWallsContradict) {
     std::vector<PlaneMatch> walls;
     for (int i = 0; i < 400; ++i)   // to their building, or to whatever lies near
       walls.push_back({{10, 8, 2}, i % 2 ? Eigen::Vector3d(1, 0, 0) : Eigen::Vector3d(0, 1, 0), here ? 0.02 * (i % 7) : -1.9 + 3.8 * (i * 37 % 400) / 400, 1e-4, 7});
-    pieces.vote(pose(0, 0, 0), walls);
+    pieces.vote(0, pose(0, 0, 0), walls);
     pieces.take_likeliest_offsets();
     pieces.add(0, pose(0, 0, 0), walls, noise);
     return pieces.contradicted(1).front();
@@ -192,13 +192,14 @@ TEST(PriorPieces, WallsThatFaceOtherwiseContradict) {
       if (i % 10 >= alike_of_ten) walls.back().normal = Eigen::Vector3d(std::sqrt(0.5), std::sqrt(0.5), 0);
       walls.back().scan_variance_m2 = walls.back().normal.dot(walls.back().scan_covariance * walls.back().normal);
     }
-    pieces.vote(pose(0, 0, 0), walls);
+    pieces.vote(0, pose(0, 0, 0), walls);
     pieces.take_likeliest_offsets();
     pieces.add(0, pose(0, 0, 0), walls, noise);
     return pieces.contradicted(1).front();
   };
   EXPECT_FALSE(contradicted(8));
   EXPECT_TRUE(contradicted(3));
+  EXPECT_TRUE(contradicted(0));   // nothing is left to compare
 }
 
 TEST(PriorPieces, WhatAllPiecesOfAKindHaveInCommonNoNumberOfThemAveragesOut) {
