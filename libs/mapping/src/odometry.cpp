@@ -21,6 +21,13 @@ bool UsualFit::admit(const TargetResult& match, bool after_loss) const {
   return after_loss ? share > 0.85 && rmse < 1.8 : share > 0.7 || rmse < 2;
 }
 
+bool UsualFit::doubts(const MatchFigures& match) const {
+  constexpr int least = 5;
+  constexpr double least_share = 0.85, most_rmse = 1.4;   // of what is usual
+  if (count_ < least || match.num_correspondences == 0) return false;
+  return static_cast<double>(match.num_inliers) < least_share * share_ * static_cast<double>(match.num_correspondences) || match.inlier_rmse_m > most_rmse * rmse_m_;
+}
+
 void UsualFit::take(const MatchFigures& match) {
   constexpr double share_of_new = 0.1;
   const double share = static_cast<double>(match.num_inliers) / static_cast<double>(match.num_correspondences);
@@ -98,6 +105,18 @@ OdometryStep Odometry::found_again(const SurfelCloud& scan) {
   return matched(scan, registration_.search(scan, targets, T_odom_last_, circle).front().match.T_map_scan);
 }
 
+/// Scans may be missing in a recording. Where one fits worse than usual, it is tried where the motion carried on would have led by then, until it fits as usual. None where it never does.
+std::optional<OdometryStep> Odometry::found_ahead(const SurfelCloud& scan, const OdometryStep& found, double duration_s) {
+  constexpr double farthest_m = 40, step_m = 1, least_way_m = 0.1;
+  const double speed_m_s = velocity_.tail<3>().norm();
+  if (num_lost_ > 0 || speed_m_s * duration_s < least_way_m || !fits_.doubts(found.figures)) return std::nullopt;
+  for (double ahead_m = step_m; ahead_m <= farthest_m; ahead_m += step_m) {
+    const OdometryStep ahead = matched(scan, moved_on(T_odom_last_, velocity_, ahead_m / speed_m_s));
+    if (ahead.joined && !fits_.doubts(ahead.figures)) return ahead;
+  }
+  return std::nullopt;
+}
+
 OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
   constexpr int give_up_after = 100;
   constexpr double fading = 0.9;   // a scan
@@ -108,6 +127,8 @@ OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
   } else {
     const double duration_s = time_since_last(stamp_s);
     found = matched_in_motion(scan, duration_s);
+    const auto ahead = found_ahead(scan, found, duration_s);
+    if (ahead) found = *ahead;
     const Eigen::Isometry3d guess = found.T_odom_sensor;
     if (!found.joined && num_lost_ > 0) found = found_again(scan);
     if (!found.joined) {
@@ -123,7 +144,7 @@ OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
     if (found.began_anew) {
       velocity_.setZero();
       rocking_rad_ = unknown_rocking_rad;
-    } else if (num_lost_ == 0) {
+    } else if (num_lost_ == 0 && !ahead) {
       velocity_ = steady_velocity(T_odom_last_, found.T_odom_sensor, duration_s);
       rocking_rad_ = std::max(turn_between(T_odom_last_, found.T_odom_sensor).head<2>().norm(), fading * rocking_rad_);
     }

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <optional>
 
 #include <priormap/core/se3.hpp>
 #include <priormap/mapping/mapped_scan.hpp>
@@ -24,6 +25,8 @@ class UsualFit {
  public:
   /// Whether a match is as good as may be expected. After a loss more is asked.
   bool admit(const TargetResult& match, bool after_loss) const;
+  /// Whether a match is clearly worse than those before, though it may be admitted.
+  bool doubts(const MatchFigures& match) const;
   void take(const MatchFigures& match);
 
  private:
@@ -46,6 +49,7 @@ class Odometry {
   OdometryStep matched_after(const SurfelCloud& scan, double duration_s);
   OdometryStep matched_in_motion(SurfelCloud& scan, double duration_s);
   OdometryStep found_again(const SurfelCloud& scan);
+  std::optional<OdometryStep> found_ahead(const SurfelCloud& scan, const OdometryStep& found, double duration_s);
 
   static constexpr double unknown_rocking_rad = 0.07;
   OdometryOptions options_;

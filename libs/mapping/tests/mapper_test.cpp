@@ -141,6 +141,19 @@ TEST_F(Street, ADriveThatIsNeverFoundAgainBeginsAnew) {
   EXPECT_GT(scans.back().covariance(3, 3), 1000);   // and says that it does not know where
 }
 
+/// Some scans were never written, and the stamps do not tell.
+TEST_F(Street, ScansThatAreMissingAreDrivenOver) {
+  constexpr double long_m = 60;
+  Mapper mapper(MapperOptions::preset("default"), std::nullopt, {truth(0), truth(0).inverse() * truth(1)}, 1);
+  const auto scan = [&](std::size_t i) {
+    Scan one = scan_from(long_m, truth(static_cast<int>(i < 10 ? i : i + 6)), i);
+    one.stamp_s = 0.1 * static_cast<double>(i);
+    return one;
+  };
+  for (std::size_t i = 0; i < 16; ++i) mapper.step(scan(i));
+  for (const MappedScan& one : mapper.finish(scan)) EXPECT_LT(position_error(one, truth(static_cast<int>(one.index < 10 ? one.index : one.index + 6))), 0.1) << one.index;
+}
+
 /// A platform that rocks turns back when constant velocity says it turns on.
 TEST_F(Street, ARockingPlatformIsFollowed) {
   const auto rocking = [](int k) {
