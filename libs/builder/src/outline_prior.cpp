@@ -12,6 +12,7 @@
 #include <priormap/core/hash.hpp>
 #include <priormap/prior/prior_writer.hpp>
 
+#include "impossible_heights.hpp"
 #include "outline_crs.hpp"
 #include "outline_stages.hpp"
 
@@ -76,6 +77,13 @@ std::vector<WrittenBuildings> write_outlines(FootprintList outlines, const Outli
   return write_buildings(footprints, parts, frames, source_ids, sight ? &*sight : nullptr, prior_options, outline_options, writer, diagnostics, threads, events);
 }
 
+void warn_of_impossible_heights(const OutlineFrames& frames, const OutlineOptions& options, const Events& events) {
+  for (const auto& [raster, file] : {std::pair(&frames.ground.terrain(), &options.terrain), {&frames.surface, &options.heights_from}}) {
+    const ImpossibleHeights found = *raster ? (*raster)->impossible_heights() : ImpossibleHeights();
+    if (found.cells > 0) events.warn(text_of(*file, found));
+  }
+}
+
 }  // namespace
 
 OutlineCounts& OutlineCounts::operator+=(const OutlineCounts& other) {
@@ -111,6 +119,7 @@ OutlineReport build_outline_prior(OutlineInput input, const PriorOptions& prior_
 
   const std::vector<WrittenBuildings> written =
       write_outlines(std::exchange(input.footprints, {}), frames, sources, prior_options, outline_options, writer, diagnostics, threads, events);
+  warn_of_impossible_heights(frames, outline_options, events);
   WrittenBuildings all;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     all += written[i];

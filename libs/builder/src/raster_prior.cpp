@@ -22,6 +22,8 @@
 #include <priormap/sources/height_raster.hpp>
 #include <priormap/sources/raster_points.hpp>
 
+#include "impossible_heights.hpp"
+
 namespace priormap {
 namespace {
 
@@ -286,7 +288,9 @@ std::vector<std::pair<std::string, std::string>> facts_of(const RasterInput& inp
   return facts;
 }
 
-[[noreturn]] void refuse_empty(const std::vector<RasterInput>& inputs, const PriorOptions& options) {
+/// @param impossible  one line for each raster with heights that are none
+[[noreturn]] void refuse_empty(const std::vector<RasterInput>& inputs, const PriorOptions& options, const std::vector<std::string>& impossible) {
+  if (!impossible.empty()) throw FormatError(impossible.front());
   if (options.bbox.empty()) throw FormatError(inputs[0].file, "holds no height: every cell is without data");
   throw FormatError(inputs[0].file, "no height " + missed_by_bbox(options, inputs[0].facts.bounds, inputs[0].crs.crs));
 }
@@ -318,6 +322,7 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
   PriorWriter writer(output, manifest_of(prior, prior_options, sources, finest_cell, generator), overwrite);
 
   std::uint64_t num_points = 0;
+  std::vector<std::string> impossible;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const RasterPoints points(inputs[i].file, inputs[i].crs.crs, prior, prior_options.spacing_m, raster_options.walls());
     const TileSquares squares(areas[i], prior_options.tile_size_m, raster_options.walls() ? std::min(prior_options.spacing_or(points.cell_size()), points.cell_size()) : prior_options.spacing_or(points.cell_size()));
@@ -330,8 +335,10 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
     const PointCounts written = write_raster(AreaWorker(points, bbox, preferred_of(inputs, i, prior)), squares, later, common, writer, threads, advance);
     sources[i].facts = facts_of(inputs[i], raster_options, written);
     num_points += written.all;
+    if (const ImpossibleHeights found = points.impossible_heights(); found.cells > 0) impossible.push_back(text_of(inputs[i].file, found));
   }
-  if (num_points == 0) refuse_empty(inputs, prior_options);
+  if (num_points == 0) refuse_empty(inputs, prior_options, impossible);
+  for (const std::string& line : impossible) events.warn(line);
   writer.set_sources(sources);
   return {writer.finish(threads, events), inputs.size()};
 }

@@ -218,6 +218,36 @@ TEST_F(RasterPriorTest, spacing_thins_or_densifies) {
   EXPECT_EQ(report_.manifest.spacing_m, 5);
 }
 
+TEST_F(RasterPriorTest, voids_that_the_file_does_not_declare_are_left_out_and_told_of_once) {
+  RasterFixture voids = hills(300, 200);
+  voids.value = [](double col, double row) { return col < 150 && row < 100 ? -9999 : 500; };
+  const fs::path file = write(voids, "dem.tif");
+  const auto expect_left_out = [&](const std::string& name, const PriorOptions& options, std::size_t num_points) {
+    warnings_.clear();
+    const PointCloud points = points_of(build({file}, options, name));
+    EXPECT_EQ(points.size(), num_points);
+    for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(points.position(i).z(), 500);
+    ASSERT_EQ(warnings_.size(), 2u) << "and that heights are undeclared";
+    EXPECT_NE(warnings_[1].find("dem.tif: 15000 of 60000 cells hold -9999, which is no height on Earth; they are left out"), std::string::npos) << warnings_[1];
+    EXPECT_NE(warnings_[1].find("gdal_translate -a_nodata -9999"), std::string::npos) << warnings_[1];
+  };
+  expect_left_out("cells", {}, 45000);
+  PriorOptions lattice;
+  lattice.spacing_m = 1;
+  expect_left_out("lattice", lattice, 45000);
+}
+
+TEST_F(RasterPriorTest, heights_in_another_unit_are_an_error_that_says_so) {
+  RasterFixture millimetres = hills(20, 20);
+  millimetres.value = [](double col, double) { return 500000 + col; };
+  try {
+    build({write(millimetres, "dem.tif")}, {}, "prior");
+    FAIL();
+  } catch (const FormatError& error) {
+    EXPECT_NE(std::string(error.what()).find("400 of 400 cells hold values from 500000 to 500019"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(RasterPriorTest, nothing_to_write_is_an_error_and_leaves_nothing) {
   const fs::path file = write(hills(20, 20), "dem.tif");
   PriorOptions options;

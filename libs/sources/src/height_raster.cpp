@@ -87,7 +87,7 @@ auto naming_file(const std::filesystem::path& file, Call&& call) {
 
 struct HeightRaster::Impl {
   Impl(const std::filesystem::path& file, const std::optional<Crs>& override_crs, const Crs& target_crs)
-      : raster(file),
+      : raster(file, override_crs),
         source(source_crs(raster, override_crs)),
         target(target_crs),
         horizontal(naming_file(file, [&] { return Transformer(source.horizontal(), target.horizontal(), area_of(raster.facts(), source)); })),
@@ -196,6 +196,8 @@ void HeightRaster::for_each_inside(const Bounds2& bounds, const std::function<vo
     }
   }
 }
+
+ImpossibleHeights HeightRaster::impossible_heights() const { return impl_->raster.impossible_heights(); }
 
 const Crs& HeightRaster::source() const { return impl_->source; }
 

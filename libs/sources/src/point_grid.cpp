@@ -107,7 +107,10 @@ class WallBuilder {
   void add_to_place_before(std::size_t place) { add(place, -1, {0, 1}); }
 
  private:
-  bool is_between(std::size_t a, std::size_t b) const { return std::abs(grid_.z[b] - grid_.z[a]) > walls_.least_step; }
+  bool is_between(std::size_t a, std::size_t b) const {
+    const double step = std::abs(grid_.z[b] - grid_.z[a]);
+    return step > walls_.least_step && step <= walls_.greatest_step;
+  }
 
   /// From steps along (across, back) to those along (x, y), times a constant.
   static Eigen::Matrix2f gradient_of(const PointGrid& grid) {

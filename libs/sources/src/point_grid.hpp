@@ -23,10 +23,10 @@ struct PointGrid {
   std::size_t size() const { return lines * length; }
 };
 
-/// Walls at the steps of a grid: where the heights of two neighbours differ by more than `least_step`, a raster knows no more than that a surface rises somewhere between
+/// Walls at the steps of a grid: where the heights of two neighbours differ by more than `least_step` and not by more than any wall is high, a raster knows no more than that a surface rises somewhere between
 /// their centres.
 struct StepWalls {
-  double least_step;   ///< in the unit of z
+  double least_step, greatest_step;   ///< in the unit of z
   double rise;         ///< from one point of a wall to the next above, in the unit of z
 };
 

@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cfloat>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include <priormap/core/error.hpp>
@@ -21,8 +23,8 @@
 namespace priormap {
 namespace {
 
-/// Nothing on Earth is this high: what is beyond is a void value that the file does not declare.
-constexpr double largest_height = 1e5;
+/// From below the shore of the Dead Sea, and below the deepest pits, to above Mount Everest; above a geoid or an ellipsoid.
+constexpr double lowest_on_earth_m = -500, highest_on_earth_m = 9000;
 
 std::shared_ptr<GDALDataset> open_dataset(const std::string& name) {
   auto* dataset = GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY);
@@ -51,11 +53,11 @@ Eigen::Affine2d read_transform(GDALDataset& dataset, const std::filesystem::path
   return transform;
 }
 
-/// Metres per unit of undeclared heights that the band gives a unit.
-double band_unit_m(const std::string& unit) {
+/// Metres per unit of undeclared heights that the band gives a unit other than the metre.
+std::optional<double> band_unit_m(const std::string& unit) {
   if (unit == "ft" || unit == "foot" || unit == "feet") return 0.3048;
   if (unit == "us-ft" || unit == "US survey foot" || unit == "sfoot" || unit == "ftUS") return 1200.0 / 3937.0;
-  return 1;
+  return std::nullopt;
 }
 
 /// DTED (MIL-PRF-89020B) states the error that 90 % of the heights keep, in whole metres; "NA" where unknown.
@@ -94,6 +96,7 @@ struct RasterFile::Open {
   std::int64_t bytes_a_row = 0;   ///< of the whole raster, decoded
   int block_height = 1;
   std::mutex mutex;
+  std::atomic<bool> has_met_impossible = false;
 
   void read(const std::filesystem::path& file, const CellWindow& window, std::span<double> heights) {
     const std::lock_guard lock(mutex);
@@ -111,7 +114,7 @@ struct RasterFile::Open {
   }
 };
 
-RasterFile::RasterFile(const std::filesystem::path& file) : file_(file), open_(std::make_shared<Open>()) {
+RasterFile::RasterFile(const std::filesystem::path& file, const std::optional<Crs>& source) : file_(file), open_(std::make_shared<Open>()) {
   register_gdal();
   const QuietGdal quiet;
   open_->dataset = open_raster(file);
@@ -142,24 +145,58 @@ RasterFile::RasterFile(const std::filesystem::path& file) : file_(file), open_(s
   is_float32_ = band.GetRasterDataType() == GDT_Float32;
   scale_ = band.GetScale();
   offset_ = band.GetOffset();
-  if (!facts_.crs || !facts_.crs->has_vertical()) {
-    const double unit_m = band_unit_m(band.GetUnitType());
-    scale_ *= unit_m;
-    offset_ *= unit_m;
+  const std::optional<Crs>& crs = source ? source : facts_.crs;
+  const double unit_m = crs ? crs->vertical_unit_m() : 1;
+  const bool is_declared = facts_.crs && facts_.crs->has_vertical();
+  if (const std::optional<double> own_unit_m = band_unit_m(band.GetUnitType()); own_unit_m && !is_declared) {
+    scale_ *= *own_unit_m / unit_m;
+    offset_ *= *own_unit_m / unit_m;
   }
+  lowest_ = lowest_on_earth_m / unit_m;
+  highest_ = highest_on_earth_m / unit_m;
+  if (crs && crs->heights_point_down()) lowest_ = -std::exchange(highest_, -lowest_);
+}
+
+void RasterFile::read_values(const CellWindow& window, std::span<double> values) const {
+  const QuietGdal quiet;
+  open_->read(file_, window, values);
+  if (!no_data_) return;
+  for (double& value : values)
+    if (is_no_data(value, *no_data_, is_float32_)) value = std::numeric_limits<double>::quiet_NaN();
 }
 
 void RasterFile::read(const CellWindow& window, std::span<double> heights) const {
-  const QuietGdal quiet;
-  open_->read(file_, window, heights);
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  if (no_data_)
-    for (double& z : heights)
-      if (is_no_data(z, *no_data_, is_float32_)) z = none;
+  read_values(window, heights);
+  const double scale = scale_, offset = offset_, lowest = lowest_, highest = highest_;
+  int num_impossible = 0;   // without a branch: most cells are heights
   for (double& z : heights) {
-    z = z * scale_ + offset_;
-    if (!(std::abs(z) < largest_height)) z = none;
+    const double height = z * scale + offset;
+    const bool is_possible = (height >= lowest) & (height <= highest);
+    num_impossible += !is_possible & (height == height);
+    z = is_possible ? height : std::numeric_limits<double>::quiet_NaN();
   }
+  if (num_impossible > 0) open_->has_met_impossible = true;
+}
+
+ImpossibleHeights RasterFile::impossible_heights() const {
+  if (!open_->has_met_impossible) return {};
+  constexpr int cells_at_once = 1 << 20;
+  const int rows_at_once = std::max(1, cells_at_once / facts_.width);
+  ImpossibleHeights found{0, std::uint64_t(facts_.width) * std::uint64_t(facts_.height), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  std::vector<double> values;
+  for (int row = 0; row < facts_.height; row += rows_at_once) {
+    const CellWindow rows{0, row, facts_.width, std::min(rows_at_once, facts_.height - row)};
+    values.resize(static_cast<std::size_t>(rows.width) * static_cast<std::size_t>(rows.height));
+    read_values(rows, values);
+    for (const double value : values) {
+      const double z = value * scale_ + offset_;
+      if (std::isnan(z) || (z >= lowest_ && z <= highest_)) continue;
+      ++found.cells;
+      found.lowest = std::min(found.lowest, value);
+      found.highest = std::max(found.highest, value);
+    }
+  }
+  return found;
 }
 
 RasterFacts read_raster_facts(const std::filesystem::path& file) { return RasterFile(file).facts(); }

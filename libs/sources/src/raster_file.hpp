@@ -18,8 +18,9 @@ struct CellWindow {
 /// Band 1 of a GDAL raster as heights. Thread-safe; copies share the open file, so that each of its blocks is decoded once.
 class RasterFile {
  public:
+  /// @param source  in place of the CRS that the file declares: says in which unit its heights are
   /// @throws IoError, FormatError
-  explicit RasterFile(const std::filesystem::path& file);
+  explicit RasterFile(const std::filesystem::path& file, const std::optional<Crs>& source = std::nullopt);
 
   const std::filesystem::path& path() const { return file_; }
   const RasterFacts& facts() const { return facts_; }
@@ -28,9 +29,13 @@ class RasterFile {
   /// Heights of a window inside the raster, row by row; NaN where there is none. What the file stores together with the rows of the window
   /// stays decoded: windows are best read row of windows by row of windows. @throws FormatError when the cells cannot be decoded.
   void read(const CellWindow& window, std::span<double> heights) const;
+  /// Of the whole file, which is read once more; nothing where no copy has read any. @throws FormatError as read
+  ImpossibleHeights impossible_heights() const;
 
  private:
   struct Open;
+  /// As the file holds them, NaN where it declares no data.
+  void read_values(const CellWindow& window, std::span<double> values) const;
 
   std::filesystem::path file_;
   std::shared_ptr<Open> open_;
@@ -39,6 +44,7 @@ class RasterFile {
   std::optional<double> no_data_;
   bool is_float32_ = false;
   double scale_ = 1, offset_ = 0;
+  double lowest_ = 0, highest_ = 0;   ///< of heights on Earth, in the unit and direction of this file's
 };
 
 }  // namespace priormap

@@ -71,20 +71,22 @@ std::optional<Bounds2> target_bounds(const RasterFacts& facts, double target_cel
 /// Walls of cells that are near enough to each other to tell where they stand. @param cell_size  of the raster, in the unit of the target CRS
 std::optional<StepWalls> step_walls(const Crs& target, double cell_size, const std::optional<double>& least_wall_m) {
   constexpr double coarsest_m = 2.5, greatest_rise_m = 1;
+  constexpr double highest_m = 1000;   // no building and no cliff rises so far from one cell to the next
   const double cell_m = cell_size * target.horizontal_unit_m(), unit_m = std::abs(target.vertical_unit_m());
   if (!least_wall_m || cell_m > coarsest_m) return std::nullopt;
-  return StepWalls{std::max(*least_wall_m, cell_m) / unit_m, std::min(cell_m, greatest_rise_m) / unit_m};
+  return StepWalls{std::max(*least_wall_m, cell_m) / unit_m, highest_m / unit_m, std::min(cell_m, greatest_rise_m) / unit_m};
 }
 
 /// The raster's own cell centres.
 class CellSampling {
  public:
   CellSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, const std::optional<double>& least_wall_m)
-      : CellSampling(RasterFile(file), source, target, least_wall_m) {}
+      : CellSampling(RasterFile(file, source), source, target, least_wall_m) {}
 
   const std::optional<Bounds2>& bounds() const { return bounds_; }
   const CoordinateOperation& operation() const { return transformer_.exact().operation(); }
   double cell_size() const { return cell_size_; }
+  ImpossibleHeights impossible_heights() const { return raster_.impossible_heights(); }
 
   void read(const Bounds2& area, const LasPoint& common, const RasterPoints::Visit& visit) {
     for_each_grid(area, [&] { points_of_grid(grid_, walls_, area, common, visit); });
@@ -231,6 +233,10 @@ class LatticeSampling {
   const std::optional<Bounds2>& bounds() const { return bounds_; }
   const CoordinateOperation& operation() const { return cells_.operation(); }
   double cell_size() const { return raster_.cell_size(); }
+  ImpossibleHeights impossible_heights() const {
+    const ImpossibleHeights of_lattice = raster_.impossible_heights();
+    return of_lattice.cells > 0 ? of_lattice : cells_.impossible_heights();
+  }
 
   void read(const Bounds2& area, const LasPoint& common, const RasterPoints::Visit& visit) {
     const auto first = [&](double v) { return static_cast<std::int64_t>(std::floor(v / spacing_ - 0.5)); };
@@ -305,6 +311,10 @@ const std::optional<Bounds2>& RasterPoints::bounds() const {
 
 double RasterPoints::cell_size() const {
   return std::visit([](const auto& sampling) { return sampling.cell_size(); }, impl_->sampling);
+}
+
+ImpossibleHeights RasterPoints::impossible_heights() const {
+  return std::visit([](const auto& sampling) { return sampling.impossible_heights(); }, impl_->sampling);
 }
 
 const CoordinateOperation& RasterPoints::operation() const {

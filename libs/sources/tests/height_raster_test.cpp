@@ -138,6 +138,29 @@ TEST_F(HeightRasterTest, every_way_to_say_no_data_is_understood) {
   expect_hole({.value = hole(std::numeric_limits<double>::infinity())}, "infinite.tif");
 }
 
+TEST_F(HeightRasterTest, values_that_are_no_height_on_earth_are_no_data_and_counted) {
+  const auto with_hole = [](double value) { return [value](double col, double) { return col < 3 ? value : 100; }; };
+  const auto met = [&](const RasterFixture& fixture, const std::string& name, const std::optional<Crs>& source = std::nullopt) {
+    const HeightRaster raster = HeightRaster::open(write(fixture, name), source, Crs::parse("EPSG:32632"));
+    EXPECT_EQ(raster.impossible_heights().cells, 0u) << "nothing is read yet";
+    const HeightRaster copy = raster;
+    const bool is_height = copy.at(500001.5, 4999995.5).has_value() || fixture.no_data;
+    EXPECT_TRUE(copy.at(500005.5, 4999995.5));
+    const ImpossibleHeights impossible = raster.impossible_heights();
+    EXPECT_EQ(impossible.cells, is_height ? 0u : 24u) << name;
+    EXPECT_EQ(impossible.of, is_height ? 0u : 80u);
+    return impossible;
+  };
+  EXPECT_EQ(met({.value = with_hole(-9999)}, "voids.tif").lowest, -9999);
+  EXPECT_EQ(met({.type = GDT_Int16, .value = with_hole(32767)}, "highest_short.tif").highest, 32767);
+  EXPECT_EQ(met({.value = with_hole(-430)}, "dead_sea.tif").cells, 0u);
+  EXPECT_EQ(met({.value = with_hole(8849)}, "everest.tif").cells, 0u);
+  EXPECT_EQ(met({.no_data = -9999, .value = with_hole(-9999)}, "declared.tif").cells, 0u);
+  EXPECT_EQ(met({.value = with_hole(29000)}, "everest_in_feet.tif", Crs::parse("EPSG:32632+6360")).cells, 0u);
+  EXPECT_EQ(met({.value = with_hole(29000)}, "too_high_in_metres.tif", Crs::parse("EPSG:32632+5773")).cells, 24u);
+  EXPECT_EQ(met({.value = with_hole(5000), .adjust = [](GDALDataset& d) { d.GetRasterBand(1)->SetScale(0.1); }}, "decimetres.tif").cells, 0u);
+}
+
 TEST_F(HeightRasterTest, a_mask_band_hides_cells) {
   CPLSetConfigOption("GDAL_TIFF_INTERNAL_MASK", "YES");
   const fs::path file = write({.value = plane});
@@ -166,9 +189,10 @@ TEST_F(HeightRasterTest, scale_and_offset_of_the_band_are_applied_and_no_data_is
 }
 
 TEST_F(HeightRasterTest, undeclared_heights_in_feet_become_metres) {
-  const HeightRaster raster =
-      open(write({.value = [](double, double) { return 100; }, .adjust = [](GDALDataset& d) { d.GetRasterBand(1)->SetUnitType("ft"); }}));
-  EXPECT_NEAR(raster.at(500003.5, 4999995.5).value(), 30.48, 1e-9);
+  const fs::path file = write({.value = [](double, double) { return 100; }, .adjust = [](GDALDataset& d) { d.GetRasterBand(1)->SetUnitType("ft"); }});
+  EXPECT_NEAR(open(file).at(500003.5, 4999995.5).value(), 30.48, 1e-9);
+  const HeightRaster named = HeightRaster::open(file, Crs::parse("EPSG:32632+6360"), Crs::parse("EPSG:32632"));
+  EXPECT_NEAR(named.at(500003.5, 4999995.5).value(), 100 * 0.3048 / (1200.0 / 3937), 1e-9) << "feet of the file become those of the vertical CRS that the user names";
 }
 
 TEST_F(HeightRasterTest, south_up_and_rotated_rasters) {

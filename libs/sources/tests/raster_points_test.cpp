@@ -139,6 +139,12 @@ TEST_F(RasterPointsTest, low_steps_and_coarse_cells_have_no_walls) {
   EXPECT_TRUE(walls_of(read(write({.transform = {500000, 5, 0, 5000000, 0, -5}, .value = house}), utm, utm, std::nullopt, 1e4, 1.5)).empty());
 }
 
+TEST_F(RasterPointsTest, no_wall_is_higher_than_a_kilometre) {
+  const auto step = [](double height) { return [height](double col, double) { return col < 5 ? 0 : height; }; };
+  EXPECT_EQ(walls_of(read(write({.value = step(900)}), utm, utm, std::nullopt, 1e4, 1.5)).size(), 8u * 900u);
+  EXPECT_TRUE(walls_of(read(write({.value = step(1100)}), utm, utm, std::nullopt, 1e4, 1.5)).empty());
+}
+
 // Nodes of a lattice between two cells see half of a step each: as walls they would be two, of which low ones are none.
 TEST_F(RasterPointsTest, a_lattice_has_the_walls_of_the_rasters_cells) {
   const fs::path shed = write({.transform = {500000.3, 1, 0, 5000000.7, 0, -1}, .crs = "EPSG:25832", .value = [](double col, double row) { return house(col, row) > 2 ? 2.5 : 0; }});

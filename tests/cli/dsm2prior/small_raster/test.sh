@@ -12,3 +12,8 @@ succeeds dsm2prior dem.asc $options -o again --threads 1
 diff -r prior again || die "another thread count gives other bytes"
 succeeds dsm2prior dem.asc $options --overwrite --spacing 0.5 -o prior
 expect_in stdout "points                      20"
+# A void that the file does not declare is told of in one line.
+sed -i /NODATA/d dem.asc
+succeeds dsm2prior dem.asc $options -o undeclared
+expect_in stdout "points                      5"
+[ "$(cat stderr)" = "dsm2prior: warning: dem.asc: 1 of 6 cells hold -9999, which is no height on Earth; they are left out. If it means no data, let the file say so: gdal_translate -a_nodata -9999 FILE NEW.tif" ] || die "$(cat stderr)"

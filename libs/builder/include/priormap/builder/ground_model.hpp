@@ -19,6 +19,8 @@ class GroundModel {
 
   std::optional<double> at(const Eigen::Vector2d& place) const;
 
+  const std::optional<HeightRaster>& terrain() const { return terrain_; }
+
   struct Under {
     double lowest_z = 0;   ///< along the outline: where walls start
     double median_z = 0;   ///< along the outline: where heights count from, so that the noise of a terrain does not sink the roofs

@@ -22,7 +22,7 @@ class RasterPoints {
  public:
   /// @param source   of the raster, with a vertical part where its heights are known
   /// @param target   projected
-  /// @param least_wall_m  neighbouring cells whose heights differ by more are parted by a wall, one point a cell's edge and at most a metre, halfway between their centres;
+  /// @param least_wall_m  neighbouring cells whose heights differ by more, and by at most 1000 m, are parted by a wall, one point a cell's edge and at most a metre, halfway between their centres;
   ///                 none, or cells beyond 2.5 m: no walls. `spacing` does not change them
   /// @param spacing  edge of a square lattice of the target CRS on whose cells' centres heights are interpolated; none: the raster's own
   ///                 cell centres
@@ -46,6 +46,7 @@ class RasterPoints {
   /// A rectangle of the target CRS with all points; nothing where the raster reaches beyond the domain of the CRS.
   const std::optional<Bounds2>& bounds() const;
   const CoordinateOperation& operation() const;
+  ImpossibleHeights impossible_heights() const;   ///< as of HeightRaster
   double cell_size() const;   ///< edge of a raster cell (geometric mean) in the unit of the target CRS, at the raster's centre
 
  private:
