@@ -17,6 +17,7 @@
 
 #include "checkpoints.hpp"
 #include "confidence.hpp"
+#include "datasets/file_numbers.hpp"
 #include "run_inputs.hpp"
 #include "run_report.hpp"
 #include "trajectory_writer.hpp"
@@ -112,6 +113,16 @@ void warn_of_empty_scans(const std::vector<MappedScan>& scans, const ScanSource&
   if (first == scans.end()) return;
   events.warn("scans that hold no points of use (finite, within 10 km of the sensor): " + std::to_string(std::count_if(first, scans.end(), is_empty)) + ", the first is " + source.file(first->index).string() +
               "; the motion was carried on there");
+}
+
+/// They leave a gap in the drive, and shift what is counted by the order of the files.
+void warn_of_missing_scans(const ScanSource& source, ScanRange range, const Events& events) {
+  std::vector<fs::path> files;
+  for (std::size_t i = range.first; i < range.last; ++i) files.push_back(source.file(i));
+  const MissingFiles missing = missing_files(files);
+  if (missing.count == 0) return;
+  events.warn("scans missing between " + files.front().string() + " and " + files.back().filename().string() + ": " + std::to_string(missing.count) + ", the first is " + missing.first +
+              "; stamps: " + source.info().stamps);
 }
 
 void warn_of_idle_times(const RunOptions& options, const Events& events) {
@@ -218,6 +229,7 @@ std::optional<RunSummary> run_mapper(const RunOptions& options, int threads, Ove
   const ScanRange range = range_of(*source, options);
   const auto prior = options.prior.empty() ? nullptr : open_prior(options.prior, options.prior_options);
   warn_of_idle_times(options, events);
+  warn_of_missing_scans(*source, range, events);
   const std::string identity = identity_of(options, method, *source, range, prior.get());
   if (is_whole) {
     leave_as_it_is(output, options.output, identity, events);

@@ -9,6 +9,8 @@
 #include <priormap/core/error.hpp>
 #include <priormap/mapping/datasets.hpp>
 
+#include "datasets/file_numbers.hpp"
+
 #include "scan_folder.hpp"
 
 namespace priormap {
@@ -79,6 +81,42 @@ TEST(Datasets, StampsThatDoNotFitAreRefused) {
   EXPECT_NE(message_of<FormatError>([&] { open_scans(folder.path()); }).find("2 stamps for 1 scans"), std::string::npos);
   write_text(folder.path() / "times.txt", "soon\n");
   EXPECT_NE(message_of<FormatError>([&] { open_scans(folder.path()); }).find("'soon' is no time"), std::string::npos);
+}
+
+TEST(Datasets, StampsGoByNumberWhereScansAreMissing) {
+  const Folder folder;
+  const auto scans = folder.path() / "velodyne";
+  const auto stamps = [&](const char* times) {
+    write_text(folder.path() / "times.txt", times);
+    const auto source = open_scans(folder.path());
+    std::vector<double> stamps_s;
+    for (std::size_t i = 0; i < source->size(); ++i) stamps_s.push_back(source->stamp_s(i));
+    return stamps_s;
+  };
+  for (const char* name : {"000001.bin", "000002.bin", "000004.bin", "000005.bin"}) write_raw(scans / name, two_points);
+  EXPECT_EQ(stamps("1 2 3 4 5"), (std::vector<double>{1, 2, 4, 5})) << "counted from the first scan";
+  EXPECT_EQ(stamps("0 1 2 3 4 5"), (std::vector<double>{1, 2, 4, 5})) << "counted from zero, which is missing too";
+  EXPECT_EQ(stamps("1 2 4 5"), (std::vector<double>{1, 2, 4, 5})) << "one a scan: whoever lost the scan lost its stamp";
+  EXPECT_NE(message_of<FormatError>([&] { stamps("0 1 2 3 4 5 6"); }).find("7 stamps for 4 scans, 000001.bin to 000005.bin"), std::string::npos);
+  std::filesystem::remove(folder.path() / "times.txt");
+  EXPECT_NEAR(open_scans(folder.path())->stamp_s(2), 0.3, 1e-9) << "without stamps the gap takes its time too";
+  write_raw(scans / "of_another_name.bin", two_points);
+  EXPECT_NE(message_of<FormatError>([&] { stamps("0 1 2 3 4 5"); }).find("6 stamps for 5 scans;"), std::string::npos) << "not counted by name";
+}
+
+TEST(Datasets, MissingFilesAreFoundByTheNumbersInNames) {
+  const auto missing = [](const std::vector<std::filesystem::path>& files) {
+    const MissingFiles found = missing_files(files);
+    return std::to_string(found.count) + found.first;
+  };
+  EXPECT_EQ(missing({"a/000028.bin", "a/000029.bin", "a/000031.bin"}), "1000030.bin");
+  EXPECT_EQ(missing({"9.pcd", "12.pcd", "13.pcd", "15.pcd", "16.pcd"}), "310.pcd");
+  EXPECT_EQ(missing({"frame_1.ply", "frame_2.ply", "frame_4.ply"}), "1frame_3.ply");
+  EXPECT_EQ(missing({"8.bin", "9.bin", "10.bin"}), "0");
+  EXPECT_EQ(missing({"00.bin", "05.bin", "10.bin", "15.bin"}), "0") << "every fifth of them";
+  EXPECT_EQ(missing({"1403636579763555584.pcd", "1403636579863555584.pcd", "1403636579963555584.pcd"}), "0") << "times of a clock";
+  EXPECT_EQ(missing({"left.pcd", "right.pcd"}), "0");
+  EXPECT_EQ(missing({}), "0");
 }
 
 TEST(Datasets, ScansAreLookedForAndMissed) {

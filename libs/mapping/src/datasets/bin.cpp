@@ -16,7 +16,7 @@ std::unique_ptr<ScanSource> open(const fs::path& path, const DatasetOptions& opt
   const fs::path scans = bin_folder(path);
   auto files = files_ending(scans, ".bin");
   const fs::path folder = fs::is_directory(scans) ? scans : fs::path();
-  auto stamps = folder.empty() ? read_stamps({}, files.size()) : read_stamps({folder / "times.txt", folder / ".." / "times.txt"}, files.size());
+  auto stamps = folder.empty() ? read_stamps({}, files) : read_stamps({folder / "times.txt", folder / ".." / "times.txt"}, files);
   PointTimes point_times(options.point_times, scans, stamps.stamps_s, PointTimes::Otherwise::none);
   ScanSourceInfo info{"bin", stamps.origin, {}, 0};
   return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), std::move(point_times),

@@ -27,7 +27,7 @@ PointCloud decode(const fs::path& file) {
 std::unique_ptr<ScanSource> open(const fs::path& path, const DatasetOptions& options) {
   auto files = files_ending(path, ending_of(path));
   const fs::path folder = fs::is_directory(path) ? path : fs::path();
-  auto stamps = folder.empty() ? read_stamps({}, files.size()) : read_stamps({folder / "times.txt", folder / ".." / "times.txt"}, files.size());
+  auto stamps = folder.empty() ? read_stamps({}, files) : read_stamps({folder / "times.txt", folder / ".." / "times.txt"}, files);
   PointTimes point_times(options.point_times, path, stamps.stamps_s, PointTimes::Otherwise::fields);
   ScanSourceInfo info{"clouds", stamps.origin, {}, 0};
   return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), std::move(point_times), decode);

@@ -24,7 +24,7 @@ bool recognises(const fs::path&) { return false; }
 std::unique_ptr<ScanSource> open(const fs::path& path, const DatasetOptions& options) {
   const fs::path scans = bin_folder(path);
   auto files = files_ending(scans, ".bin");
-  auto stamps = read_stamps({scans / "times.txt", scans / ".." / "times.txt"}, files.size());
+  auto stamps = read_stamps({scans / "times.txt", scans / ".." / "times.txt"}, files);
   PointTimes point_times(options.point_times, scans, stamps.stamps_s, PointTimes::Otherwise::none);
   const double correction_deg = options.vertical_angle_correction_deg.value_or(default_correction_deg);
   const double correction_rad = correction_deg * std::numbers::pi / 180;

@@ -37,22 +37,20 @@ double unix_time(const std::string& line, const fs::path& file, std::size_t line
   return static_cast<double>(sys_days(date).time_since_epoch().count()) * 86400 + h * 3600 + m * 60 + s + fraction;
 }
 
-Stamps read_timestamps(const fs::path& file, std::size_t count) {
-  if (!fs::is_regular_file(file)) return read_stamps({}, count);
-  Stamps stamps{{}, file.filename().string()};
+Stamps read_timestamps(const fs::path& file, std::span<const fs::path> files) {
+  if (!fs::is_regular_file(file)) return read_stamps({}, files);
+  std::vector<double> stamps_s;
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);)
-    if (!line.empty()) stamps.stamps_s.push_back(unix_time(line, file, stamps.stamps_s.size() + 1));
-  if (stamps.stamps_s.size() != count)
-    throw FormatError(file, "holds " + std::to_string(stamps.stamps_s.size()) + " stamps for " + std::to_string(count) + " scans");
-  return stamps;
+    if (!line.empty()) stamps_s.push_back(unix_time(line, file, stamps_s.size() + 1));
+  return stamps_of_files(std::move(stamps_s), file, files);
 }
 
 std::unique_ptr<ScanSource> open(const fs::path& path, const DatasetOptions& options) {
   const fs::path folder = velodyne_folder(path);
   const fs::path scans = fs::is_directory(folder / "data") ? folder / "data" : folder;
   auto files = files_ending(scans, ".bin");
-  auto stamps = read_timestamps(folder / "timestamps.txt", files.size());
+  auto stamps = read_timestamps(folder / "timestamps.txt", files);
   PointTimes point_times(options.point_times, scans, stamps.stamps_s, PointTimes::Otherwise::clockwise);
   ScanSourceInfo info{"kitti-raw", stamps.origin, {}, 0};
   return std::make_unique<ScanFiles>(std::move(info), std::move(files), std::move(stamps.stamps_s), std::move(point_times), [](const fs::path& file) { return read_float_records(file, 4); });

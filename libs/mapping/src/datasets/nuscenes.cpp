@@ -34,7 +34,7 @@ PointCloud decode(const fs::path& file) {
 
 std::unique_ptr<ScanSource> open(const fs::path& path, const DatasetOptions& options) {
   auto files = files_ending(path, ending);
-  auto stamps = read_stamps({}, files.size());
+  auto stamps = read_stamps({}, files);
   if (std::all_of(files.begin(), files.end(), [](const fs::path& f) { return stamp_of(f).has_value(); })) {
     for (std::size_t i = 0; i < files.size(); ++i) stamps.stamps_s[i] = *stamp_of(files[i]);
     stamps.origin = "file names";

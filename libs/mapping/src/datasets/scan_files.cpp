@@ -9,6 +9,7 @@
 #include <priormap/core/error.hpp>
 
 #include "datasets/bin_records.hpp"
+#include "datasets/file_numbers.hpp"
 
 namespace priormap {
 namespace {
@@ -175,7 +176,21 @@ bool has_file_ending(const fs::path& path, const std::string& ending) {
   return std::any_of(fs::directory_iterator(path), fs::directory_iterator(), [&](const fs::directory_entry& e) { return ends_with(e.path(), ending); });
 }
 
-Stamps read_stamps(const std::vector<fs::path>& candidates, std::size_t count) {
+Stamps stamps_of_files(std::vector<double> stamps_s, const fs::path& file, std::span<const fs::path> files) {
+  const std::string name = file.filename().string();
+  if (stamps_s.size() == files.size()) return {std::move(stamps_s), name};
+  const std::vector<std::uint64_t> numbers = file_numbers(files);
+  for (const std::uint64_t first : {numbers.empty() ? 0 : numbers.front(), std::uint64_t(0)}) {
+    if (numbers.empty() || numbers.back() - first + 1 != stamps_s.size()) continue;
+    Stamps by_number{{}, name + ", by the numbers of the scans"};
+    for (const std::uint64_t number : numbers) by_number.stamps_s.push_back(stamps_s[number - first]);
+    return by_number;
+  }
+  throw FormatError(file, "holds " + std::to_string(stamps_s.size()) + " stamps for " + std::to_string(files.size()) + " scans" +
+                              (numbers.empty() ? "" : ", " + files.front().filename().string() + " to " + files.back().filename().string()) + "; it needs a line for each");
+}
+
+Stamps read_stamps(const std::vector<fs::path>& candidates, std::span<const fs::path> files) {
   for (const auto& file : candidates) {
     if (!fs::is_regular_file(file)) continue;
     std::ifstream in(file);
@@ -191,12 +206,11 @@ Stamps read_stamps(const std::vector<fs::path>& candidates, std::size_t count) {
       if (end != word.size() || !std::isfinite(stamp)) throw FormatError(file, "line " + std::to_string(stamps.size() + 1) + ": '" + word + "' is no time in seconds");
       stamps.push_back(stamp);
     }
-    if (stamps.size() != count)
-      throw FormatError(file, "holds " + std::to_string(stamps.size()) + " stamps for " + std::to_string(count) + " scans");
-    return {std::move(stamps), file.filename().string()};
+    return stamps_of_files(std::move(stamps), file, files);
   }
-  Stamps assumed{std::vector<double>(count), "assumed 10 Hz"};
-  for (std::size_t i = 0; i < count; ++i) assumed.stamps_s[i] = 0.1 * static_cast<double>(i);
+  const std::vector<std::uint64_t> numbers = file_numbers(files);
+  Stamps assumed{std::vector<double>(files.size()), "assumed 10 Hz"};
+  for (std::size_t i = 0; i < files.size(); ++i) assumed.stamps_s[i] = 0.1 * static_cast<double>(numbers.empty() ? i : numbers[i] - numbers.front());
   return assumed;
 }
 

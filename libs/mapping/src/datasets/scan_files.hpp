@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,8 +68,12 @@ struct Stamps {
   std::string origin;   ///< for the run report
 };
 
-/// Seconds, one a line (times.txt). The first candidate that exists counts; none: 10 Hz assumed.
-/// @throws FormatError when the number of lines is not `count`.
-Stamps read_stamps(const std::vector<std::filesystem::path>& candidates, std::size_t count);
+/// The stamps in `file` as those of a recording's files: one each, or one for each number that the files go through, from their first one or from zero, where some are missing.
+/// @throws FormatError when they fit neither
+Stamps stamps_of_files(std::vector<double> stamps_s, const std::filesystem::path& file, std::span<const std::filesystem::path> files);
+
+/// Seconds, one a line (times.txt). The first candidate that exists counts; none: 10 Hz assumed, by the numbers of the files where they have any.
+/// @throws FormatError when they do not fit the files
+Stamps read_stamps(const std::vector<std::filesystem::path>& candidates, std::span<const std::filesystem::path> files);
 
 }  // namespace priormap

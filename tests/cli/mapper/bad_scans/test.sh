@@ -22,6 +22,12 @@ fails_with 1 "times.txt: holds 7 stamps for 6 scans" mapper --scans drive -o out
 expect_absent out
 # In the middle of a drive, NaN points are left out and counted, and an empty scan is bridged with a warning.
 head -6 drive/times.txt >times && mv times drive/times.txt
+# A scan that is missing is named, and each of the others keeps its own stamp.
+cp -r drive gap && rm gap/velodyne/000003.bin
+succeeds mapper --scans gap -o gap_out
+expect_in stderr "mapper: warning: scans missing between gap/velodyne/000000.bin and 000005.bin: 1, the first is 000003.bin; stamps: times.txt, by the numbers of the scans"
+[ "$(cut -d, -f2 gap_out/trajectory.csv | tail -2 | xargs printf '%.3f ')" = "$(tail -2 drive/times.txt | xargs printf '%.3f ')" ] || die "the stamps are not those of the scans"
+rm -r gap gap_out
 cat nan/000000.bin >>drive/velodyne/000001.bin
 : >drive/velodyne/000003.bin
 cp noise/000000.bin drive/velodyne/000005.bin
