@@ -101,13 +101,14 @@ class DriveGraph {
 
   /// @return the marginals at the new poses
   /// @param least_gain  see PoseGraph::optimize
-  Marginals estimate(PiecesOfPrior& pieces, const PieceSigmas& sigmas, double least_gain, std::vector<double>& weights) {
+  /// @param in_prior    the start is a guess in the frame of a prior; else poses count from it
+  Marginals estimate(PiecesOfPrior& pieces, const PieceSigmas& sigmas, bool in_prior, double least_gain, std::vector<double>& weights) {
     PoseGraph graph(options_.graph);
     for (std::size_t k = 0; k < size(); ++k) {
       graph.add_pose(poses_[k]);
       if (k > 0) graph.add_between(k - 1, k, T_odom(k - 1).inverse() * T_odom(k), symmetric(keyframes_[k].motion_covariance.inverse()));
     }
-    if (pieces.size() > 0) graph.add_absolute(0, T_map_start_, symmetric(start_information(T_map_start_)));   // what no piece holds must not float, such as the height over walls alone
+    if (in_prior) graph.add_absolute(0, T_map_start_, symmetric(start_information(T_map_start_)));   // what no piece holds must not float, such as the height over walls alone
     pieces.add_to(graph, sigmas);
     graph.optimize(least_gain);
     for (std::size_t k = 0; k < size(); ++k) poses_[k] = graph.pose(k);
@@ -229,7 +230,7 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
     }
     const bool last = !prior || pass + 1 == how.passes;
     constexpr double least_gain = 1e-6, least_gain_before = 1e-4;   // what comes before the last pass is compared anew
-    marginals = graph.estimate(pieces, sigmas, last ? least_gain : least_gain_before, weights);
+    marginals = graph.estimate(pieces, sigmas, prior.has_value(), last ? least_gain : least_gain_before, weights);
     if (!last) sigmas = pieces.estimated_sigmas(stated, sigmas, marginals.pieces, weights);
   }
   const std::vector<bool> held = pieces.held(graph.size());

@@ -141,7 +141,10 @@ void PaperMethod::exchange(StateArchive& archive) {
   archive(T_map_before_last_, T_map_last_, local_map_, graph_, pose_of_scan_, last_verdict_);
 }
 
+/// Where the prior held no pose, they are as sure as the start was; without a prior they count from it.
 std::vector<EstimatedPose> PaperMethod::finish(const ReadScan&) {
+  const bool held = std::ranges::any_of(graph_.absolute_weights(), [](double weight) { return weight > 0; });
+  if (prior_ && !held) graph_.add_absolute(0, graph_.pose(0), start_information(graph_.pose(0)));
   const std::vector<Matrix6d> covariances = graph_.marginal_covariances();
   std::vector<EstimatedPose> poses;
   for (const PoseId k : pose_of_scan_) poses.push_back({graph_.pose(k), covariances[k]});

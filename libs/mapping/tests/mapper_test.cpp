@@ -215,6 +215,24 @@ TEST_F(Street, WhereThePriorEndsTheDriveGoesOn) {
   EXPECT_LT(position_error(scans.back(), truth(num_scans - 1)), 1.0);  // the rim of the prior pulls: 6 m correspondences have no other partner
 }
 
+TEST_F(Street, WhereThePriorNeverBeginsPosesAreAsSureAsTheStart) {
+  const test::TiledPoints tiles(world_, 50);
+  const Eigen::Isometry3d away(Eigen::Translation3d(0, 500, 0));
+  for (const char* preset : {"default", "paper"}) {
+    const NearTiles prior(tiles, MapFrame::local(), 150);
+    Mapper mapper(MapperOptions::preset(preset), prior, {away * truth(0)}, 1);
+    for (int k = 0; k < 6; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
+    for (const MappedScan& scan : mapper.finish(read_again)) {
+      EXPECT_EQ(scan.verdict, Verdict::outside_prior) << preset;
+      const Eigen::Matrix3d position = scan.T_map_sensor.linear() * scan.covariance.bottomRightCorner<3, 3>() * scan.T_map_sensor.linear().transpose();
+      EXPECT_GT(std::sqrt(position(0, 0)), 4.9) << preset;
+      EXPECT_GT(std::sqrt(position(2, 2)), 0.9) << preset;
+      EXPECT_GT(std::sqrt(scan.covariance(2, 2)), 0.19) << preset;
+      if (scan.index == 0) { EXPECT_LT(std::sqrt(position(0, 0)), 5.1) << preset; }
+    }
+  }
+}
+
 TEST_F(Street, AScanWithoutPointsCarriesTheMotionOn) {
   Mapper mapper(MapperOptions::paper(), std::nullopt, {truth(0)}, 1);
   for (int k = 0; k < 10; ++k) mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
