@@ -1,4 +1,5 @@
 #include <Eigen/LU>
+#include <algorithm>
 #include <numbers>
 #include <utility>
 
