@@ -5,11 +5,12 @@
 
 #include <priormap/posegraph/pose_graph.hpp>
 
-#include "block_cholesky.hpp"
+#include "sparse_blocks.hpp"
 
 namespace priormap {
 
-/// The normal matrix of a pose graph. Each piece is tied to poses alone, so that all pieces are eliminated first, one by one (Schur complement); what is left are blocks of six rows.
+/// The normal matrix of a pose graph: six rows for each pose, three for each piece. A piece that few poses see is eliminated before them; one that thousands see, in many laps around it,
+/// after them, else each two of them would become neighbours. SparseBlocks finds that order, for which pieces are filled up to six rows.
 class NormalMatrix {
  public:
   NormalMatrix(const std::vector<char>& held, std::size_t num_pieces);
@@ -27,29 +28,22 @@ class NormalMatrix {
   Marginals marginals() const;
 
  private:
-  using Matrix36d = Eigen::Matrix<double, 3, 6>;
   static constexpr std::uint32_t held = ~std::uint32_t(0);
   struct Tie {
     std::uint32_t a, b;
     Matrix6d block;
   };
   struct Sight {
-    std::uint32_t pose;
-    Matrix36d block;
+    std::uint32_t pose, piece;
+    Eigen::Matrix<double, 3, 6> block;
   };
-  struct PieceRows {
-    Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
-    std::vector<Sight> seen;
-  };
-  /// Of the pieces, were all poses known.
-  std::vector<Eigen::Matrix3d> covariances_of_pieces() const;
-  SparseBlocks without_pieces(const std::vector<Eigen::Matrix3d>& covariances_of_pieces) const;
-  std::vector<std::vector<std::uint32_t>> neighbours() const;
+  SparseBlocks blocks() const;
 
   std::vector<std::uint32_t> row_of_pose_;
-  std::vector<Matrix6d> poses_;   // those that are not held
+  std::vector<Matrix6d> poses_;            // those that are not held; the rows after them are of pieces
+  std::vector<Eigen::Matrix3d> pieces_;
   std::vector<Tie> ties_;
-  std::vector<PieceRows> pieces_;
+  std::vector<Sight> sights_;
 };
 
 }  // namespace priormap

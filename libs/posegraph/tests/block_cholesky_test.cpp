@@ -67,6 +67,21 @@ TEST(BlockCholesky, FillsInLittleOfALongChain) {
   EXPECT_EQ(blocks, neighbours.size() - 1);   // eliminated from its ends, a chain fills in nothing
 }
 
+TEST(BlockCholesky, FillsInLittleOfManyLapsPastTheSameRows) {
+  constexpr std::uint32_t laps = 20, per_lap = 100, num_seen = 50, in_sight = 10;   // as poses see pieces of the prior
+  std::vector<std::vector<std::uint32_t>> neighbours(laps * per_lap + num_seen);
+  std::size_t ties = 0;
+  for (std::uint32_t i = 0; i < laps * per_lap; ++i) {
+    if (i > 0) neighbours[i].push_back(i - 1);
+    for (std::uint32_t s = 0; s < in_sight; ++s) neighbours[i].push_back(laps * per_lap + (i * num_seen / per_lap + s) % num_seen);
+    ties += neighbours[i].size();
+  }
+  const SparseBlocks matrix(neighbours);
+  std::size_t blocks = 0;
+  for (const auto& column : matrix.columns()) blocks += column.blocks.size();
+  EXPECT_LT(blocks, 3 * ties);   // were those rows eliminated first: 200 poses that see the same one, tied two by two
+}
+
 TEST(BlockCholesky, RefusesWhatIsNotPositiveDefinite) { EXPECT_FALSE(BlockCholesky::of(*Example(-500).sparse)); }
 
 }  // namespace

@@ -164,9 +164,10 @@ TEST(PoseGraph, MarginalsEqualThoseOfCeres) {
   }
 }
 
-/// A drive along pieces, each in sight of some poses, that turns back into its beginning; as the library takes it and as Ceres does.
+/// A drive along pieces, each in sight of some poses and one, as a tower, of all, that turns back into its beginning; as the library takes it and as Ceres does.
 struct StreetOfPieces {
-  static constexpr std::size_t num_poses = 30, num_pieces = 20;
+  static constexpr std::size_t num_poses = 30, num_pieces = 21;
+  static constexpr PieceId tower = num_pieces - 1;
   PoseGraphOptions options;
   PoseGraph graph;
   ceres::Problem problem;
@@ -184,11 +185,13 @@ struct StreetOfPieces {
       if (k > 0) add({k - 1, k, noisy(truth[k - 1].inverse() * truth[k], random, 0.002, 0.02), information(0.002, 0.02)});
       if (k % 10 == 3) add(AbsoluteFactor{k, noisy(truth[k], random, 0.005, 0.1), information(0.005, 0.1)});
     }
-    for (PieceId p = 0; p < num_pieces; ++p) {
+    for (PieceId p = 0; p < tower; ++p) {
       add_piece(p, {0.3, 0.2, 0.1});
       for (std::size_t k = p; k < p + 6; ++k) add(p, k, noisy(truth[k], random, 0.01, 0.1), random, p % 9 == 4 ? 2.0 : 0.1);
       add(p, (p * 7) % num_poses, truth[(p * 7) % num_poses], random, 0.1);   // once more from elsewhere, or from the same pose
     }
+    add_piece(tower, {0.3, 0.2, 0.1});
+    for (std::size_t k = 0; k < num_poses; ++k) add(tower, k, noisy(truth[k], random, 0.01, 0.1), random, 0.1);
   }
 
   void add(const BetweenFactor& f) {
@@ -274,6 +277,29 @@ TEST(PoseGraph, MarginalsOfPosesAndPiecesEqualThoseOfCeres) {
     covariance.GetCovarianceBlock(street.offsets[p].data(), street.offsets[p].data(), expected.data());
     EXPECT_LT((marginals.pieces[p] - expected).norm(), 1e-4 * expected.norm()) << "piece " << p;
   }
+}
+
+TEST(PoseGraph, APieceInSightOfThousandsOfPosesIsKnownByAllOfThem) {
+  constexpr std::size_t num_poses = 4000;   // tied to each other two by two they would take gigabytes
+  constexpr double sigma_pose_m = 0.25, sigma_sight_m = 0.5, sigma_piece_m = 1;
+  PoseGraph graph({.absolute_width = 0, .between_width = 0, .piece_width = 0});
+  const PieceId piece = graph.add_piece(Eigen::Vector3d::Constant(sigma_piece_m));
+  PieceEquations sight;   // where the piece is, seen from the pose
+  Eigen::Matrix<float, 3, 9> J = Eigen::Matrix<float, 3, 9>::Zero();
+  J.middleCols<3>(3).setIdentity();
+  J.rightCols<3>() = -Eigen::Matrix3f::Identity();
+  sight.H = J.transpose() * J / float(sigma_sight_m * sigma_sight_m);
+  for (std::size_t k = 0; k < num_poses; ++k) {
+    const PoseId id = graph.add_pose(pose(double(k), 0, 0));
+    graph.add_absolute(id, graph.pose(id), information(0.01, sigma_pose_m));
+    graph.add_piece_factor(id, piece, graph.pose(id), sight);
+  }
+  const Marginals marginals = graph.marginals();
+  const double by_one = 1 / (sigma_sight_m * sigma_sight_m + sigma_pose_m * sigma_pose_m);
+  const double by_others = 1 / (sigma_piece_m * sigma_piece_m) + double(num_poses - 1) * by_one;
+  const double pose_information = 1 / (sigma_pose_m * sigma_pose_m) + 1 / (sigma_sight_m * sigma_sight_m + 1 / by_others);
+  EXPECT_LT((marginals.pieces[piece] - Eigen::Matrix3d::Identity() / (by_others + by_one)).norm(), 1e-6 / (by_others + by_one));
+  for (const Matrix6d& covariance : marginals.poses) ASSERT_LT((covariance.bottomRightCorner<3, 3>() - Eigen::Matrix3d::Identity() / pose_information).norm(), 1e-6 / pose_information);
 }
 
 TEST(PoseGraph, AbsoluteConstraintsTakeTheDriftOutOfAChain) {
