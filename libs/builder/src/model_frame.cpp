@@ -69,17 +69,19 @@ bool northing_comes_first(const std::string& srs_name, const Crs& crs, const Eig
 }  // namespace
 
 ModelFrames::ModelFrames(const PriorOptions& options, const BuildingModel& first, const std::string& file, const Events& events) : options_(options), events_(events) {
-  const InputCrs input = resolve_input_crs(options, declared_crs(first.srs_name, file, !options.source_crs.empty()), file, {});
+  InputCrs input = resolve_input_crs(options, declared_crs(first.srs_name, file, !options.source_crs.empty()), file, {});
   Eigen::Vector3d place = first_point(first, file);
   if (northing_comes_first(first.srs_name, input.crs, place)) place = swapped(place);
   const std::optional<GeoPoint> middle = reach(input.crs.horizontal(), place);
   if (!middle) throw CrsError(file + ": its coordinates lie out of reach of " + input.crs.human_name() + "; name their CRS with --source-crs");
   prior_ = resolve_prior_crs(options, {input}, *middle, events);
+  first_ = std::move(input);
 }
 
 ModelFrames::Frame& ModelFrames::frame_of(const BuildingModel& model, const std::string& file) {
   if (const auto known = frames_.find(model.srs_name); known != frames_.end()) return known->second;
   const InputCrs input = resolve_input_crs(options_, declared_crs(model.srs_name, file, !options_.source_crs.empty()), file, events_);
+  resolve_prior_crs(options_, {*first_, input}, std::nullopt, {});   // refuses heights that do not go together
   Frame frame{input.crs, std::nullopt, {input.crs.name(), input.assumed_vertical, {}}};
   Transformer transformer(input.crs, *prior_);
   frame.source.operation = transformer.operation();

@@ -25,6 +25,7 @@ class ModelFrames {
 
   const Crs& prior() const { return *prior_; }
   /// Turns axes and coordinates of a building into the prior's, in place. Polygons with a point outside the operation's reach are emptied.
+  /// @throws CrsError where its heights are declared and those of the first are not, or the other way round, or in another vertical CRS and none is asked for.
   void to_prior(BuildingModel& model, const std::string& file);
   ModelSourceFrame source(const BuildingModel& model, const std::string& file) { return frame_of(model, file).source; }
 
@@ -39,6 +40,7 @@ class ModelFrames {
 
   const PriorOptions& options_;
   const Events& events_;
+  std::optional<InputCrs> first_;
   std::optional<Crs> prior_;
   std::map<std::string, Frame> frames_;                                ///< by srsName
   std::map<std::pair<std::string, std::string>, bool> swaps_axes_;     ///< by file and srsName: writers differ in the order under one name

@@ -19,6 +19,14 @@ echo '<CityModel/>' >empty.gml
 fails_with 1 "holds no building" citygml2prior empty.gml -o out
 fails_with 1 "undeclared" citygml2prior good.gml -o out --crs EPSG:25832+7837
 fails_with 2 "EPSG:4326" citygml2prior good.gml -o out --crs EPSG:4326
+# Heights declared in one file only: neither dropped nor assumed, whichever file counts as the first.
+for shift in 1 2 3 4; do
+  sed "s/EPSG:25832/urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837/; s/5000/500$shift/g" good.gml >declared.gml
+  fails_with 1 "good.gml: heights are undeclared, those of other inputs are in EPSG:7837; say --assume-vertical EPSG:7837 if they are in it" citygml2prior good.gml declared.gml --quiet -o out
+done
+succeeds citygml2prior good.gml declared.gml --assume-vertical EPSG:7837 -o both
+expect_in stdout "vertical                    EPSG:7837"
+[ ! -s stderr ] || die "warns of nothing"
 fails_with 1 "good.gml: no building lies inside --bbox (W,S,E,N in EPSG:4326); the data reach over 9" citygml2prior good.gml -o out --quiet --bbox 1,1,2,2
 fails_with 1 "were the box's numbers given as S,W,N,E?" citygml2prior good.gml -o out --quiet --bbox 47,8,48,10
 fails_with 2 "--faces" citygml2prior good.gml -o out --faces some
