@@ -6,6 +6,7 @@
 #include <iomanip>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <span>
 #include <sstream>
 #include <tuple>
@@ -128,10 +129,17 @@ PriorSource source_of(const RasterInput& input, const RasterPoints& points, cons
 
 LatticePoint lattice_corner(const Bounds2& area) { return {std::llround(area.min_x * 1000), std::llround(area.min_y * 1000)}; }
 
+/// A raster that has the word wherever it has a height.
+struct Preferred {
+  std::size_t input;
+  HeightRaster heights;
+};
+
 /// What one thread needs to turn a raster into points of the prior.
 class AreaWorker {
  public:
-  AreaWorker(const RasterPoints& points, const BboxFilter& bbox, const std::vector<HeightRaster>& preferred) : points_(points), bbox_(bbox), preferred_(preferred) {}
+  AreaWorker(const RasterPoints& points, const BboxFilter& bbox, const std::vector<Preferred>& preferred)
+      : points_(points), bbox_(bbox), preferred_(preferred), num_left_out_(preferred.size()) {}
 
   /// Calls visit(points) with those that belong to the prior.
   void read(const Bounds2& area, const LasPoint& common, const RasterPoints::Visit& visit) {
@@ -142,15 +150,22 @@ class AreaWorker {
       visit(points);
     });
   }
+  /// Points inside --bbox where a preferred raster has the word, by the first such.
+  const std::vector<std::uint64_t>& num_left_out() const { return num_left_out_; }
 
  private:
-  bool belongs(double x, double y) const {
-    return bbox_.contains(x, y) && std::none_of(preferred_.begin(), preferred_.end(), [&](const HeightRaster& raster) { return raster.at(x, y).has_value(); });
+  bool belongs(double x, double y) {
+    if (!bbox_.contains(x, y)) return false;
+    const auto other = std::ranges::find_if(preferred_, [&](const Preferred& raster) { return raster.heights.at(x, y).has_value(); });
+    if (other == preferred_.end()) return true;
+    ++num_left_out_[static_cast<std::size_t>(other - preferred_.begin())];
+    return false;
   }
 
   RasterPoints points_;
   BboxFilter bbox_;
-  std::vector<HeightRaster> preferred_;
+  std::vector<Preferred> preferred_;
+  std::vector<std::uint64_t> num_left_out_;
 };
 
 /// Lends one worker to each thread that asks.
@@ -165,6 +180,8 @@ class WorkerPool {
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(worker));
   }
+  /// All there are, once none is lent.
+  const std::vector<std::unique_ptr<AreaWorker>>& workers() const { return idle_; }
 
  private:
   std::unique_ptr<AreaWorker> take() {
@@ -181,14 +198,14 @@ class WorkerPool {
 };
 
 /// Preferred rasters that may have heights where `raster` has.
-std::vector<HeightRaster> preferred_of(const std::vector<RasterInput>& inputs, std::size_t raster, const Crs& prior) {
-  std::vector<HeightRaster> preferred;
+std::vector<Preferred> preferred_of(const std::vector<RasterInput>& inputs, std::size_t raster, const Crs& prior) {
+  std::vector<Preferred> preferred;
   const auto bounds_in_prior = [&](const RasterInput& input) { return image_bounds(input.facts.bounds, Transformer(input.crs.crs.horizontal(), prior.horizontal())); };
   if (raster == 0) return preferred;
   const auto own = bounds_in_prior(inputs[raster]);
   for (std::size_t i = 0; i < raster; ++i) {
     const auto other = bounds_in_prior(inputs[i]);
-    if (!own || !other || overlap(own->outer, other->outer)) preferred.push_back(HeightRaster::open(inputs[i].file, inputs[i].crs.crs, prior));
+    if (!own || !other || overlap(own->outer, other->outer)) preferred.push_back({i, HeightRaster::open(inputs[i].file, inputs[i].crs.crs, prior)});
   }
   return preferred;
 }
@@ -231,6 +248,7 @@ class TileSquares {
 
 struct PointCounts {
   std::uint64_t all = 0, of_walls = 0;
+  std::vector<std::uint64_t> left_out;   ///< by the preferred raster that has the word there
 };
 
 bool is_of_wall(const LasPoint& p) { return p.normal[2] == 0 && (p.normal[0] != 0 || p.normal[1] != 0); }
@@ -256,7 +274,10 @@ PointCounts write_raster(const AreaWorker& prototype, const TileSquares& squares
         for (key.y = tiles.first.y; key.y <= tiles.last.y; ++key.y) writer.close_tile(key);
     advance(static_cast<double>(++done) / static_cast<double>(squares.size()));
   });
-  return {num_points, num_of_walls};
+  PointCounts counts{num_points, num_of_walls, std::vector<std::uint64_t>(prototype.num_left_out().size())};
+  for (const auto& worker : pool.workers())
+    for (std::size_t i = 0; i < counts.left_out.size(); ++i) counts.left_out[i] += worker->num_left_out()[i];
+  return counts;
 }
 
 /// Where the points of a raster lie in the prior. @throws CrsError when that is not known
@@ -286,6 +307,32 @@ std::vector<std::pair<std::string, std::string>> facts_of(const RasterInput& inp
   facts.emplace_back("least_wall_m", (std::ostringstream() << *options.walls()).str());
   facts.emplace_back("wall_points", std::to_string(written.of_walls));
   return facts;
+}
+
+/// Of a raster that others cover.
+struct Covered {
+  fs::path file, most_by;
+  std::uint64_t left_out = 0, written = 0;
+  double share() const { return static_cast<double>(left_out) / static_cast<double>(std::max<std::uint64_t>(left_out + written, 1)); }
+};
+
+Covered covered(const std::vector<RasterInput>& inputs, std::size_t raster, const std::vector<Preferred>& preferred, const PointCounts& counts) {
+  Covered result{inputs[raster].file, {}, std::accumulate(counts.left_out.begin(), counts.left_out.end(), std::uint64_t(0)), counts.all};
+  if (result.left_out > 0) result.most_by = inputs[preferred[static_cast<std::size_t>(std::ranges::max_element(counts.left_out) - counts.left_out.begin())].input].file;
+  return result;
+}
+
+/// Tiles of one survey overlap by their rims; what overlaps by more may be a surface and a terrain model of one place, of which one would vanish unseen.
+void warn_of_covered(std::vector<Covered> rasters, const Events& events) {
+  constexpr double usual_rim = 0.1;
+  std::erase_if(rasters, [](const Covered& raster) { return raster.share() <= usual_rim; });
+  if (rasters.empty()) return;
+  const Covered& most = *std::ranges::max_element(rasters, {}, &Covered::share);
+  std::ostringstream text;
+  text << most.file.string() << ": " << std::floor(100 * most.share()) << " % of its points are left out where " << most.most_by.string() << " has heights";
+  if (rasters.size() > 1) text << ", and more than a tenth of " << rasters.size() - 1 << " other" << (rasters.size() > 2 ? "s" : "");
+  text << ": the finer raster has the word, of equal cells the one with the lower sha256. Surface and terrain models go in a prior each (--kind terrain), which priormerge joins";
+  events.warn(text.str());
 }
 
 /// @param impossible  one line for each raster with heights that are none
@@ -323,6 +370,7 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
 
   std::uint64_t num_points = 0;
   std::vector<std::string> impossible;
+  std::vector<Covered> covered_rasters;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const RasterPoints points(inputs[i].file, inputs[i].crs.crs, prior, prior_options.spacing_m, raster_options.walls());
     const TileSquares squares(areas[i], prior_options.tile_size_m, raster_options.walls() ? std::min(prior_options.spacing_or(points.cell_size()), points.cell_size()) : prior_options.spacing_or(points.cell_size()));
@@ -332,13 +380,16 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
     common.source = static_cast<std::uint16_t>(i);
     common.set_sigma(static_cast<float>(*sources[i].sigma_m));
     const auto advance = [&](double fraction) { events.advance("reading rasters", (static_cast<double>(i) + fraction) / static_cast<double>(inputs.size())); };
-    const PointCounts written = write_raster(AreaWorker(points, bbox, preferred_of(inputs, i, prior)), squares, later, common, writer, threads, advance);
+    const std::vector<Preferred> preferred = preferred_of(inputs, i, prior);
+    const PointCounts written = write_raster(AreaWorker(points, bbox, preferred), squares, later, common, writer, threads, advance);
     sources[i].facts = facts_of(inputs[i], raster_options, written);
     num_points += written.all;
+    covered_rasters.push_back(covered(inputs, i, preferred, written));
     if (const ImpossibleHeights found = points.impossible_heights(); found.cells > 0) impossible.push_back(text_of(inputs[i].file, found));
   }
   if (num_points == 0) refuse_empty(inputs, prior_options, impossible);
   for (const std::string& line : impossible) events.warn(line);
+  warn_of_covered(covered_rasters, events);
   writer.set_sources(sources);
   return {writer.finish(threads, events), inputs.size()};
 }

@@ -184,6 +184,27 @@ TEST_F(RasterPriorTest, where_rasters_overlap_the_finer_has_the_word_except_in_i
   EXPECT_EQ(points.size(), 300u + 2500 - 100 + 25);
 }
 
+TEST_F(RasterPriorTest, a_raster_that_another_covers_is_told_of_and_rims_are_not) {
+  const fs::path ground = write(hills(100, 100), "dtm.tif");
+  RasterFixture higher = hills(100, 100);
+  higher.value = [](double, double) { return 520; };
+  const fs::path surface = write(higher, "dsm.tif");
+  const auto warning = [&](const std::vector<fs::path>& files, const std::string& name, int threads) {
+    warnings_.clear();
+    build(files, {}, name, threads);
+    return warnings_.size() > 1 ? warnings_.back() : "";
+  };
+  const std::string told = warning({surface, ground}, "both", 2);
+  EXPECT_NE(told.find(": 100 % of its points are left out where "), std::string::npos) << told;
+  EXPECT_NE(told.find("--kind terrain"), std::string::npos) << told;
+  EXPECT_EQ(warning({ground, surface}, "turned", 1), told) << "whatever the order and the threads";
+  RasterFixture beside = hills(100, 100);
+  beside.transform[0] += 95;
+  EXPECT_EQ(warning({ground, write(beside, "next.tif")}, "tiles", 2), "");
+  beside.transform[0] -= 45;
+  EXPECT_NE(warning({ground, write(beside, "half.tif")}, "half", 2).find(": 50 % of its points"), std::string::npos);
+}
+
 TEST_F(RasterPriorTest, declared_heights_are_transformed_and_the_operation_is_recorded) {
   PriorOptions options = with_crs("EPSG:32632+5773");
   options.source_crs = "EPSG:4979";
