@@ -70,17 +70,19 @@ Building BuildingRaiser::raise(std::uint32_t footprint, Diagnostics& diagnostics
   }
   const BuildingAttributes attributes = whole ? inherited(own.footprint.attributes, whole->footprint.attributes) : own.footprint.attributes;
   if (attributes.roof_shape == RoofShape::other) report_flat(own, "is not built", diagnostics);
-  const BuildingHeight height = building_height(attributes, roof_above(own, *ground), run_m(own, attributes), options_);
+  building.surface_m = surface_above(own, *ground);
+  const bool shows_roof = building.surface_m && *building.surface_m >= lowest_roof_m;
+  const BuildingHeight height = building_height(attributes, shows_roof ? building.surface_m : std::nullopt, run_m(own, attributes), options_);
   building.rule = height.rule;
   building.feature = feature(own, *ground, height);
   for (const Polygon2& polygon : own.polygons) building.solids.push_back(solid(polygon, attributes, *ground, height, own, diagnostics));
   return building;
 }
 
-std::optional<double> BuildingRaiser::roof_above(const ProjectedFootprint& own, const GroundModel::Under& ground) const {
+std::optional<double> BuildingRaiser::surface_above(const ProjectedFootprint& own, const GroundModel::Under& ground) const {
   if (!surface_ || own.footprint.attributes.height_m) return std::nullopt;
   const std::optional<double> z = surface_z(own, *surface_);
-  return z && *z - ground.median_z >= lowest_roof_m ? std::optional(*z - ground.median_z) : std::nullopt;
+  return z ? std::optional(*z - ground.median_z) : std::nullopt;
 }
 
 BuildingSolid BuildingRaiser::solid(const Polygon2& outline, const BuildingAttributes& attributes, const GroundModel::Under& ground, const BuildingHeight& height,

@@ -18,6 +18,7 @@ struct Building {
   HeightRule rule = HeightRule::fallback;
   std::uint16_t file = 0;
   bool is_part = false;
+  std::optional<double> surface_m;     ///< of a surface model above the ground, where one was asked
 };
 
 /// Lets parts replace outlines, finds ground and heights, builds roofs. One object per thread.
@@ -29,7 +30,8 @@ class BuildingRaiser {
   Building raise(std::uint32_t footprint, Diagnostics& diagnostics) const;
 
  private:
-  std::optional<double> roof_above(const ProjectedFootprint& own, const GroundModel::Under& ground) const;
+  /// Height of the surface model above the ground; nothing where the source says how high the building is.
+  std::optional<double> surface_above(const ProjectedFootprint& own, const GroundModel::Under& ground) const;
   BuildingSolid solid(const Polygon2& outline, const BuildingAttributes& attributes, const GroundModel::Under& ground, const BuildingHeight& height,
                       const ProjectedFootprint& own, Diagnostics& diagnostics) const;
   Feature feature(const ProjectedFootprint& own, const GroundModel::Under& ground, const BuildingHeight& height) const;

@@ -10,6 +10,7 @@
 #include <priormap/builder/prior_crs.hpp>
 #include <priormap/core/error.hpp>
 #include <priormap/core/hash.hpp>
+#include <priormap/geodesy/image_bounds.hpp>
 #include <priormap/prior/prior_writer.hpp>
 
 #include "impossible_heights.hpp"
@@ -84,6 +85,32 @@ void warn_of_impossible_heights(const OutlineFrames& frames, const OutlineOption
   }
 }
 
+std::string degrees_text(const Bounds2& b) { return (std::ostringstream() << std::setprecision(6) << b.min_x << ',' << b.min_y << ',' << b.max_x << ',' << b.max_y).str(); }
+
+Bounds2 lon_lat_bounds(const OutlineFrames& frames) { return {frames.area.west_deg, frames.area.south_deg, frames.area.east_deg, frames.area.north_deg}; }
+
+[[noreturn]] void refuse_terrain_elsewhere(const OutlineInput& input, const OutlineFrames& frames, const std::string& terrain) {
+  const auto image = image_bounds(read_raster_facts(terrain).bounds, Transformer(frames.ground.terrain()->source().horizontal(), Crs::parse("EPSG:4326")));
+  throw FormatError(terrain, "has no height under any building of " + input.files.front().path.string() + ", which reach over " + degrees_text(lon_lat_bounds(frames)) + " (W,S,E,N)" +
+                                 (image ? ", the terrain over " + degrees_text(image->outer) : "") + "; give the terrain of the place, or --ground-height too");
+}
+
+[[noreturn]] void refuse_empty(const OutlineInput& input, const OutlineFrames& frames, const WrittenBuildings& written, const Diagnostics& diagnostics, const PriorOptions& prior_options,
+                               const OutlineOptions& outline_options) {
+  const bool none_stands = written.counts.outlines + written.counts.parts == 0;
+  if (none_stands && !outline_options.terrain.empty() && diagnostics.counts().contains(DiagnosticCode::outside_terrain)) refuse_terrain_elsewhere(input, frames, outline_options.terrain);
+  if (prior_options.bbox.empty()) throw FormatError(input.files.front().path, "none of its buildings could be built");
+  throw FormatError(input.files.front().path, "no building " + missed_by_bbox(prior_options, lon_lat_bounds(frames), Crs::parse("EPSG:4326")));
+}
+
+/// Houses stand on the ground.
+void warn_of_sunken_surface(const WrittenBuildings& written, const OutlineOptions& options, const Events& events) {
+  if (written.with_surface == 0 || 2 * written.under_ground <= written.with_surface) return;
+  const std::string ground = options.terrain.empty() ? "--ground-height" : options.terrain;
+  events.warn(ground + " lies higher than " + options.heights_from + " at " + std::to_string(written.under_ground) + " of " + std::to_string(written.with_surface) +
+              " buildings: " + (options.terrain.empty() ? "" : "were --terrain and --heights-from given the wrong way round, or ") + "do their heights count from different surfaces?");
+}
+
 }  // namespace
 
 OutlineCounts& OutlineCounts::operator+=(const OutlineCounts& other) {
@@ -126,9 +153,8 @@ OutlineReport build_outline_prior(OutlineInput input, const PriorOptions& prior_
     sources[i].facts = facts_of(written[i].counts, outline_options);
     std::ranges::move(sight_facts(outline_options.sight, written[i].points), std::back_inserter(sources[i].facts));
   }
-  if (all.points.sampled == 0)
-    throw FormatError(input.files.front().path, prior_options.bbox.empty() ? "none of its buildings could be built"
-                                                                           : "no building " + missed_by_bbox(prior_options, Bounds2{frames.area.west_deg, frames.area.south_deg, frames.area.east_deg, frames.area.north_deg}, Crs::parse("EPSG:4326")));
+  warn_of_sunken_surface(all, outline_options, events);
+  if (all.points.sampled == 0) refuse_empty(input, frames, all, diagnostics, prior_options, outline_options);
   if (prior_options.bbox.empty()) outline_options.sight.refuse_blindness(all.points);   // a box may well hold nothing that is seen
   writer.set_sources(sources);
   return {writer.finish(threads, events), all.counts, outline_options.sight.is_active() ? std::optional(all.points) : std::nullopt, std::move(diagnostics)};

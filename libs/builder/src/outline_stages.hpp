@@ -22,10 +22,13 @@ std::optional<LineOfSight> line_of_sight(const ProjectedFootprints& footprints, 
 struct WrittenBuildings {
   OutlineCounts counts;
   SightCounts points;   ///< inside --bbox, and those of them left out as never seen
+  std::size_t with_surface = 0, under_ground = 0;   ///< buildings that a surface model was asked for, and those of them where it lies under the ground
 
   WrittenBuildings& operator+=(const WrittenBuildings& other) {
     counts += other.counts;
     points += other.points;
+    with_surface += other.with_surface;
+    under_ground += other.under_ground;
     return *this;
   }
 };

@@ -73,7 +73,7 @@ class SquareWriter {
     for (const std::uint32_t i : own) {
       diagnostics.set_rank(i + 1);
       buildings.push_back(raiser_.raise(i, diagnostics));
-      count(buildings.back(), parts_.replaced[i], by_file[buildings.back().file].counts);
+      count(buildings.back(), parts_.replaced[i], by_file[buildings.back().file]);
     }
     Diagnostics ignored;   // reported where they belong
     for (const std::uint32_t i : touching(own)) buildings.push_back(raiser_.raise(i, ignored));
@@ -84,11 +84,15 @@ class SquareWriter {
   }
 
  private:
-  static void count(const Building& building, bool is_replaced, OutlineCounts& counts) {
-    counts.replaced += is_replaced;
+  static void count(const Building& building, bool is_replaced, WrittenBuildings& written) {
+    constexpr double noise_m = 1;
+    written.counts.replaced += is_replaced;
     if (building.solids.empty()) return;
-    ++(building.is_part ? counts.parts : counts.outlines);
-    ++counts.by_rule[static_cast<std::size_t>(building.rule)];
+    ++(building.is_part ? written.counts.parts : written.counts.outlines);
+    ++written.counts.by_rule[static_cast<std::size_t>(building.rule)];
+    if (!building.surface_m) return;
+    ++written.with_surface;
+    written.under_ground += *building.surface_m < -noise_m;
   }
 
   /// Footprints of other squares that may share a wall with one of these.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -171,6 +172,40 @@ TEST_F(OutlinePrior, OutsideTheTerrainBuildingsAreCountedUnlessAGroundHeightServ
   const OutlineReport served = build(town, "served");
   EXPECT_EQ(served.diagnostics.total(), 0u);
   EXPECT_EQ(served.manifest.min.z(), 490);
+}
+
+TEST_F(OutlinePrior, ATerrainOfAnotherPlaceIsNamed) {
+  outline_options_.terrain = write_terrain(0, 0).string();
+  try {
+    build({box("far", 5000, 0, 20, 20)});
+    FAIL();
+  } catch (const FormatError& error) {
+    EXPECT_NE(std::string(error.what()).find("terrain.tif: has no height under any building of "), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find(" (W,S,E,N), the terrain over 11.55"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(OutlinePrior, TerrainAndSurfaceGivenTheWrongWayRoundAreTold) {
+  std::vector<std::string> warnings;
+  events_.warning = [&](const std::string& text) { warnings.push_back(text); };
+  std::vector<Footprint> town;
+  for (int i = 0; i < 5; ++i) town.push_back(box(std::to_string(i), 30 * i, 0, 10, 10));
+  HeightGrid surface{east - 50, north + 50, 1, 250, 100, {}};
+  for (std::size_t row = 0; row < surface.rows; ++row)
+    for (std::size_t column = 0; column < surface.columns; ++column) {
+      const Eigen::Vector2d p = surface.cell_centre(column, row) - Eigen::Vector2d(east, north);
+      surface.heights_m.push_back(p.y() > 0 && p.y() < 10 && p.x() > 0 && std::fmod(p.x(), 30) < 10 ? 508.f : 500.f);
+    }
+  write_geotiff(folder_ / "dsm.tif", surface, Crs::parse("EPSG:25832+7837"));
+  const std::string dsm = (folder_ / "dsm.tif").string(), dtm = write_terrain(0, 0).string();
+  outline_options_.terrain = dtm;
+  outline_options_.heights_from = dsm;
+  build(town, "right");
+  EXPECT_TRUE(warnings.empty()) << warnings.front();
+  std::swap(outline_options_.terrain, outline_options_.heights_from);
+  build(town, "wrong");
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("dsm.tif lies higher than " + dtm + " at 5 of 5 buildings: were --terrain and --heights-from given the wrong way round"), std::string::npos) << warnings[0];
 }
 
 TEST_F(OutlinePrior, AssumedHeightsAreTransformed) {
