@@ -1,5 +1,7 @@
 #include <priormap/builder/bbox_filter.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <vector>
@@ -13,6 +15,17 @@ namespace {
 Crs bbox_crs(const PriorOptions& options) { return horizontal_option_crs("--bbox-crs", options.bbox_crs); }
 
 bool overlap(const Bounds2& a, const Bounds2& b) { return a.min_x <= b.max_x && b.min_x <= a.max_x && a.min_y <= b.max_y && b.min_y <= a.max_y; }
+
+/// What may be wrong with a box that misses the data. @param there  the data in the box's CRS
+std::string advice(const PriorOptions& options, const Bounds2& data, const Crs& data_crs, const std::optional<Bounds2>& there) {
+  const Bounds2 box{options.bbox[0], options.bbox[1], options.bbox[2], options.bbox[3]};
+  const bool are_degrees = bbox_crs(options).is_geographic();
+  if (there && overlap(*there, {box.min_y, box.min_x, box.max_y, box.max_x})) return ": were the box's numbers given as S,W,N,E?";
+  if (!data.empty() && overlap(data, box) && !bbox_crs(options).equivalent_to(data_crs.horizontal())) return ": is the box in their CRS? --bbox-crs " + data_crs.horizontal().name() + " says so";
+  if (are_degrees && (std::max(std::abs(box.min_x), std::abs(box.max_x)) > 360 || std::max(std::abs(box.min_y), std::abs(box.max_y)) > 90))
+    return ": the box's numbers are no degrees; --bbox-crs says which CRS they are in";
+  return "; --bbox-crs says where the box is in another CRS";
+}
 
 }  // namespace
 
@@ -48,14 +61,11 @@ PointCloud BboxFilter::keep(const PointCloud& points) const {
 }
 
 std::string missed_by_bbox(const PriorOptions& options, const Bounds2& data, const Crs& data_crs) {
-  const std::vector<double>& box = options.bbox;
   std::ostringstream text;
   text << std::setprecision(8) << "lies inside --bbox (W,S,E,N in " << options.bbox_crs << ")";
   const auto image = data.empty() ? std::nullopt : image_bounds(data, Transformer(data_crs.horizontal(), bbox_crs(options)));
-  if (!image) return text.str();
-  const Bounds2& there = image->outer;
-  text << "; the data reach over " << there.min_x << "," << there.min_y << "," << there.max_x << "," << there.max_y;
-  if (overlap(there, {box[1], box[0], box[3], box[2]})) text << ": were the box's numbers given as S,W,N,E?";
+  if (image) text << "; the data reach over " << image->outer.min_x << "," << image->outer.min_y << "," << image->outer.max_x << "," << image->outer.max_y;
+  text << advice(options, data, data_crs, image ? std::optional(image->outer) : std::nullopt);
   return text.str();
 }
 

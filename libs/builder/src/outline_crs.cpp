@@ -79,7 +79,7 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
   const InputCrs& first = outlines.front();
   const std::optional<NamedRaster> terrain = named_raster(outline_options.terrain, first), surface = named_raster(outline_options.heights_from, first);
   std::vector<InputCrs> with_heights;
-  for (const InputCrs& outline : outlines) with_heights.push_back(terrain ? heights_of(*terrain, outline) : outline);
+  for (const InputCrs& outline : outlines) with_heights.push_back(terrain ? heights_of(*terrain, outline) : InputCrs{outline.crs, outline.assumed_vertical, outline.file, "--terrain"});
   if (surface) with_heights.push_back(heights_of(*surface, first));
 
   const LonLatArea area = lon_lat_area(bounds_by_file(input), outlines);

@@ -13,14 +13,6 @@
 namespace priormap {
 namespace {
 
-void check_projected_in_metres(const Crs& crs) {
-  if (!crs.is_projected())
-    throw UsageError("--crs " + crs.name() + " is not projected; a prior needs a projected CRS in metres, such as a UTM zone (EPSG:25832)");
-  if (crs.horizontal_unit_m() != 1 || crs.vertical_unit_m() != 1)
-    throw UsageError("--crs " + crs.name() + " is not in metres; a prior needs a projected CRS in metres, such as a UTM zone (EPSG:25832)");
-  if (crs.heights_point_down()) throw UsageError("--crs " + crs.name() + " counts depths; a prior needs heights");
-}
-
 bool is_utm_zone(const Crs& crs) { return crs.is_projected() && crs.human_name().find("UTM zone") != std::string::npos; }
 
 /// The UTM zone that all inputs are in already, so that nothing is moved without need.
@@ -51,11 +43,26 @@ std::string degrees_text(double west, double east) {
   return text.str();
 }
 
+/// The UTM zone of a place; nothing where none reaches.
+std::optional<std::string> zone_at(const Crs& asked, const GeoPoint& place) {
+  constexpr double southernmost_deg = -80, northernmost_deg = 84;
+  if (place.lat_deg < southernmost_deg || place.lat_deg > northernmost_deg) return std::nullopt;
+  return Crs::utm_zone(place.lon_deg, place.lat_deg, is_etrs89(asked)).name();
+}
+
 /// "; EPSG:25832 fits there", where a zone does.
 std::string fitting_zone(const Crs& asked, const GeoPoint& place) {
-  constexpr double southernmost_deg = -80, northernmost_deg = 84;
-  if (place.lat_deg < southernmost_deg || place.lat_deg > northernmost_deg) return "";
-  return "; " + Crs::utm_zone(place.lon_deg, place.lat_deg, is_etrs89(asked)).name() + " fits there";
+  const std::optional<std::string> zone = zone_at(asked, place);
+  return zone ? "; " + *zone + " fits there" : "";
+}
+
+/// @param middle  of the data
+void check_projected_in_metres(const Crs& crs, const std::optional<GeoPoint>& middle) {
+  const std::optional<std::string> zone = middle ? zone_at(crs, *middle) : std::nullopt;
+  const std::string needed = "; a prior needs a projected CRS in metres, " + (zone ? "here the UTM zone " + *zone : "such as a UTM zone (EPSG:25832)");
+  if (!crs.is_projected()) throw UsageError("--crs " + crs.name() + " is not projected" + needed);
+  if (crs.horizontal_unit_m() != 1 || crs.vertical_unit_m() != 1) throw UsageError("--crs " + crs.name() + " is not in metres" + needed);
+  if (crs.heights_point_down()) throw UsageError("--crs " + crs.name() + " counts depths; a prior needs heights");
 }
 
 constexpr double most_distortion = 0.01, border_deg = 0.25;
@@ -94,12 +101,16 @@ void check_fits(const Crs& asked, const GeoPoint& place, const Events& events) {
               ", the data lie at " + where.str() + fitting_zone(asked, place));
 }
 
-std::string remedy(const std::string& vertical) { return "; say --assume-vertical " + vertical + " if they are in it"; }
+/// For heights that are undeclared.
+std::string remedy(const InputCrs& input, const std::string& vertical) {
+  const std::string better = input.height_option.empty() ? "" : "give " + input.height_option + " with declared heights, or ";
+  return "; " + better + "say --assume-vertical " + vertical + " if they are in it";
+}
 
 /// Ellipsoidal heights belong to a horizontal CRS and cannot be assumed by themselves.
-std::string remedy_for(const Crs& asked) {
+std::string remedy_for(const InputCrs& input, const Crs& asked) {
   const auto vertical = asked.vertical();
-  return vertical ? remedy(vertical->name()) : "; declare them with --source-crs";
+  return vertical ? remedy(input, vertical->name()) : "; declare them with --source-crs";
 }
 
 /// The vertical part that heights are declared in by all inputs alike; nothing where none declares any.
@@ -116,7 +127,7 @@ std::optional<Crs> common_vertical(const std::vector<InputCrs>& inputs) {
   }
   if (!common) return std::nullopt;
   for (const InputCrs& input : inputs)
-    if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, those of other inputs are in " + common->name() + remedy(common->name()));
+    if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, those of other inputs are in " + common->name() + remedy(input, common->name()));
   return common;
 }
 
@@ -153,15 +164,18 @@ InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>
 
 Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const std::optional<GeoPoint>& middle, const Events& events) {
   const Crs asked = options.crs.empty() ? default_horizontal(inputs, middle.value_or(GeoPoint{})) : option_crs("--crs", options.crs);
-  check_projected_in_metres(asked);
+  check_projected_in_metres(asked, middle);
   if (!options.crs.empty() && middle) check_fits(asked, best_place(asked, options, *middle), events);
   if (asked.has_vertical()) {
     for (const InputCrs& input : inputs)
-      if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, but the prior is asked for in " + asked.name() + remedy_for(asked));
+      if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, but the prior is asked for in " + asked.name() + remedy_for(input, asked));
     return asked;
   }
   if (const auto vertical = common_vertical(inputs)) return with_heights_in_metres(asked, *vertical);
-  if (!inputs.empty()) events.warn(inputs[0].file + ": heights are undeclared and stay as they are (\"vertical\": null); --assume-vertical V, such as EPSG:7837, says in which vertical CRS they are");
+  if (!inputs.empty()) {
+    const std::string better = inputs[0].height_option.empty() ? "" : "give " + inputs[0].height_option + " with declared heights, or ";
+    events.warn(inputs[0].file + ": heights are undeclared and stay as they are (\"vertical\": null); " + better + "--assume-vertical V, such as EPSG:7837, says in which vertical CRS they are");
+  }
   return asked;
 }
 

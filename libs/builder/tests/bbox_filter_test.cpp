@@ -46,6 +46,9 @@ TEST(BboxFilter, a_box_that_missed_is_told_where_the_data_lie) {
   EXPECT_NE(far.find("lies inside --bbox (W,S,E,N in EPSG:4326); the data reach over 11.5"), std::string::npos) << far;
   EXPECT_EQ(far.find("S,W,N,E"), std::string::npos) << far;
   EXPECT_NE(missed_by_bbox(with_bbox({48.1, 11.5, 48.2, 11.6}), munich, prior).find("were the box's numbers given as S,W,N,E?"), std::string::npos);
+  EXPECT_NE(far.find("--bbox-crs"), std::string::npos) << far;
+  EXPECT_NE(missed_by_bbox(with_bbox({691000, 5335000, 692000, 5336000}), munich, prior).find(": is the box in their CRS? --bbox-crs EPSG:25832 says so"), std::string::npos);
+  EXPECT_NE(missed_by_bbox(with_bbox({4468000, 5334000, 4469000, 5335000}), munich, prior).find("no degrees; --bbox-crs"), std::string::npos);
   EXPECT_NE(missed_by_bbox(with_bbox({1, 1, 2, 2}, "EPSG:25832"), munich, prior).find("the data reach over 691000,5335000,692000,5336000"), std::string::npos);
 }
 

@@ -65,6 +65,21 @@ TEST(PriorCrs, a_named_vertical_crs_from_undeclared_heights_is_refused_with_the_
   EXPECT_NE(resolved.error.find("say --assume-vertical EPSG:7837 if they are in it"), std::string::npos) << resolved.error;
 }
 
+TEST(PriorCrs, an_option_that_brings_heights_is_advised_before_an_assumption) {
+  const InputCrs outlines{Crs::parse("EPSG:4326"), "", "town.osm", "--terrain"};
+  Events events;
+  std::string warning;
+  events.warning = [&](const std::string& text) { warning = text; };
+  resolve_prior_crs({}, {outlines}, GeoPoint{48, 11, 0}, events);
+  EXPECT_NE(warning.find("give --terrain with declared heights, or --assume-vertical V"), std::string::npos) << warning;
+  try {
+    resolve_prior_crs(with([](auto& o) { o.crs = "EPSG:25832+7837"; }), {outlines}, GeoPoint{48, 11, 0}, {});
+    FAIL();
+  } catch (const CrsError& error) {
+    EXPECT_NE(std::string(error.what()).find("; give --terrain with declared heights, or say --assume-vertical EPSG:7837 if they are in it"), std::string::npos) << error.what();
+  }
+}
+
 TEST(PriorCrs, the_users_word_declares_heights) {
   EXPECT_EQ(resolve(with([](auto& o) { o.crs = "EPSG:25832+7837"; o.assume_vertical = "EPSG:7837"; }), {"EPSG:25832"}).crs->name(), "EPSG:25832+7837");
   EXPECT_EQ(resolve(with([](auto& o) { o.assume_vertical = "EPSG:7837"; }), {"EPSG:25832"}).crs->name(), "EPSG:25832+7837");
@@ -82,6 +97,8 @@ TEST(PriorCrs, assumed_heights_are_recorded_and_declared_ones_keep_their_own) {
 TEST(PriorCrs, unusable_systems_are_refused) {
   const auto error = [&](const std::string& crs, const std::string& declared) { return resolve(with([&](auto& o) { o.crs = crs; }), {declared}).error; };
   EXPECT_NE(error("EPSG:4326", "EPSG:4326").find("not projected"), std::string::npos);
+  EXPECT_NE(error("EPSG:4326", "EPSG:4326").find("here the UTM zone EPSG:326"), std::string::npos) << error("EPSG:4326", "EPSG:4326");
+  EXPECT_NE(error("EPSG:4258", "EPSG:4326").find("here the UTM zone EPSG:258"), std::string::npos) << "of the same datum";
   EXPECT_NE(error("EPSG:2263", "EPSG:4326").find("not in metres"), std::string::npos) << "US survey feet";
   EXPECT_NE(error("nonsense", "EPSG:4326").find("--crs"), std::string::npos);
   EXPECT_NE(error("", "").find("no coordinate reference system"), std::string::npos);

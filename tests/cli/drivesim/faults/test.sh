@@ -10,6 +10,9 @@ fails_with 1 "absent.osm: does not exist" drivesim $small --town absent.osm -o o
 fails_with 1 "noise.osm: is not a readable OSM file" drivesim $small --town noise.osm -o out
 fails_with 1 "empty.osm: holds no street" drivesim $small --town empty.osm -o out
 fails_with 2 "is not projected; name one such as EPSG:25832+7837" drivesim $small --crs EPSG:4326 -o out
+fails_with 2 "--origin lies outside of EPSG:25832+7837; swap its numbers: it takes the longitude first" drivesim $small --origin 48.1,11.5 -o out
+fails_with 2 "--origin lies outside of EPSG:25832+7837; name the CRS of that place with --crs" drivesim $small --origin=-73.9,40.8 -o out
+fails_with 2 "latitude in [-90, 90], in this order" drivesim $small --origin=37,-122 -o out
 fails_with 2 "does not count in metres" drivesim $small --crs EPSG:2263 --origin=-73.9,40.8 -o out
 fails_with 1 "absent.tif" drivesim $small --terrain absent.tif -o out
 fails_with 1 "there" drivesim $small -o there

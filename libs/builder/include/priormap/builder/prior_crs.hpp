@@ -15,6 +15,7 @@ struct InputCrs {
   Crs crs;                        ///< with a vertical part where heights are declared or assumed
   std::string assumed_vertical;   ///< the vertical CRS taken on the user's word; empty: none
   std::string file;               ///< for messages
+  std::string height_option = {};      ///< option that would bring declared heights, for messages; empty: none
 };
 
 /// `declared` as the file states it, overridden by --source-crs (with a warning where that contradicts it), its undeclared heights completed by --assume-vertical.
