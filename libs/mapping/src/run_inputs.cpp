@@ -1,6 +1,7 @@
 #include "run_inputs.hpp"
 
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -50,6 +51,51 @@ std::string stamps_hash(const ScanSource& source, ScanRange range) {
 Json identity(Json generator, Json inputs, Json configuration) {
   for (const char* free : {"threads", "jobs"}) configuration.erase(free);   // on which no result depends
   return {{"generator", std::move(generator)}, {"inputs", std::move(inputs)}, {"configuration", std::move(configuration)}};
+}
+
+std::string text_of(const Json& value) { return value.is_null() ? "not given" : value.dump(); }
+
+/// Values that differ between two objects of options. @param visit  takes name, before, now
+template <class Visit>
+void for_each_difference(const Json& was, const Json& is, const Visit& visit) {
+  for (const auto& [name, value] : is.items())
+    if (const Json before = was.value(name, Json()); before != value) visit(name, before, value);
+}
+
+std::string option_differences(const Json& was, const Json& is) {
+  std::string text;
+  const auto add = [&](const std::string& option, const std::string& before, const std::string& now) { text += (text.empty() ? "--" : ", --") + option + " was " + before + ", is " + now; };
+  for_each_difference(was, is, [&](const std::string& name, const Json& before, const Json& now) {
+    if (name == "method" || name == "initial_pose_from") return;   // follow from others
+    if (name == "stretches" && (before.is_null() || now.is_null()))
+      add("jobs", before.is_null() ? "1" : "above 1", now.is_null() ? "1" : "above 1");
+    else if (name == "map" && (before.is_null() || now.is_null()))
+      add("no-map", before.is_null() ? "given" : "not given", now.is_null() ? "given" : "not given");
+    else if (before.is_object() && now.is_object())
+      for_each_difference(before, now, [&](const std::string& option, const Json& b, const Json& n) { add(option, text_of(b), text_of(n)); });
+    else
+      add(name, text_of(before), text_of(now));
+  });
+  return text;
+}
+
+/// A hash says nothing to a user.
+std::string first_difference(const Json& was, const Json& is) {
+  static const std::map<std::string, std::string> words = {
+      {"/inputs/scans/names_and_sizes_sha256", "names, sizes or number of the scans' files differ"},
+      {"/inputs/scans/first_scan_sha256", "the first scan, or the times of its points, is another"},
+      {"/inputs/scans/stamps_sha256", "the stamps of the scans are others"},
+      {"/inputs/prior/sha256", "the prior is another"},
+  };
+  const Json flat_was = was.flatten(), flat_is = is.flatten();
+  const auto text = [](const Json& facts, const std::string& key) { return facts.contains(key) ? facts[key].dump() : std::string("not there"); };
+  for (const Json* facts : {&flat_was, &flat_is})
+    for (const auto& [key, value] : facts->items()) {
+      if (text(flat_was, key) == text(flat_is, key)) continue;
+      const auto found = words.find(key);
+      return found != words.end() ? found->second : key.substr(1) + " was " + text(flat_was, key) + ", is " + text(flat_is, key);
+    }
+  return {};
 }
 
 std::string name_of(const std::filesystem::path& path) { return (path.filename().empty() ? path.parent_path() : path).filename().string(); }
@@ -126,12 +172,9 @@ std::string identity_in(const std::filesystem::path& run_json) {
 }
 
 std::string difference(const std::string& before, const std::string& now) {
-  const Json was = Json::parse(before).flatten(), is = Json::parse(now).flatten();
-  const auto text = [](const Json& facts, const std::string& key) { return facts.contains(key) ? facts[key].dump() : std::string("not there"); };
-  for (const Json* facts : {&was, &is})
-    for (const auto& [key, value] : facts->items())
-      if (text(was, key) != text(is, key)) return key.substr(1) + " was " + text(was, key) + ", is " + text(is, key);
-  return {};
+  const Json was = Json::parse(before), is = Json::parse(now);
+  const std::string options = option_differences(was.at("configuration"), is.at("configuration"));
+  return options.empty() ? first_difference(was, is) : options;
 }
 
 }  // namespace priormap

@@ -130,6 +130,12 @@ void warn_of_idle_times(const RunOptions& options, const Events& events) {
   if (options.preset == "paper" && !asked.empty() && asked != "none") events.warn("--point-times has no effect with --preset paper, which takes sweeps as they are");
 }
 
+void warn_of_idle_stretches(const RunOptions& options, const Events& events) {
+  const StretchOptions usual;
+  if (options.jobs == 1 && (options.stretches.scans != usual.scans || options.stretches.overlap != usual.overlap))
+    events.warn("--stretch and --stretch-overlap have no effect without --jobs above 1: the drive is mapped in one piece");
+}
+
 PriorManifest map_manifest(const RunOptions& options, const PriorPoints* prior, const Start& start, const ScanSource& source, ScanRange range) {
   PriorManifest manifest;
   if (start.crs) {
@@ -229,6 +235,7 @@ std::optional<RunSummary> run_mapper(const RunOptions& options, int threads, Ove
   const ScanRange range = range_of(*source, options);
   const auto prior = options.prior.empty() ? nullptr : open_prior(options.prior, options.prior_options);
   warn_of_idle_times(options, events);
+  warn_of_idle_stretches(options, events);
   warn_of_missing_scans(*source, range, events);
   const std::string identity = identity_of(options, method, *source, range, prior.get());
   if (is_whole) {

@@ -109,6 +109,16 @@ TEST_F(Run, TimesThatThePaperDoesNotHearAreWarnedOf) {
   EXPECT_NE(warnings.find("--point-times has no effect"), std::string::npos) << warnings;
 }
 
+TEST_F(Run, StretchesOfADriveInOnePieceAreWarnedOf) {
+  std::string warnings;
+  const Events events{[&](const std::string& message) { warnings += message + "\n"; }, {}, {}};
+  options_.no_map = true;
+  options_.limit = 1;
+  options_.stretches.scans = 100;
+  run_mapper(options_, 1, Overwrite::refuse, events);
+  EXPECT_NE(warnings.find("--stretch and --stretch-overlap have no effect without --jobs above 1"), std::string::npos) << warnings;
+}
+
 TEST_F(Run, TheSchemaSeesAFault) {
   run_mapper(options_, 1, Overwrite::refuse, {});
   auto broken = report();
@@ -171,21 +181,25 @@ TEST_F(Run, ACheckpointOfAnotherRunIsRefusedByName) {
   };
   RunOptions other = options_;
   other.preset = "default";
-  EXPECT_NE(refusal(other).find("preset was \"paper\", is \"default\""), std::string::npos) << refusal(other);
+  EXPECT_NE(refusal(other).find("is another one: --preset was \"paper\", is \"default\"; leave out"), std::string::npos) << refusal(other);
   other = options_;
   other.limit = 2;
-  EXPECT_NE(refusal(other).find("names_and_sizes_sha256"), std::string::npos) << refusal(other);
+  other.map.voxel_m *= 2;
+  EXPECT_NE(refusal(other).find("--limit was 0, is 2, --map-voxel was 0.2, is 0.4;"), std::string::npos) << refusal(other);
+  other = options_;
+  other.no_map = true;
+  EXPECT_NE(refusal(other).find("--no-map was not given, is given;"), std::string::npos) << refusal(other);
   other = options_;
   other.map.voxel_m *= 2;
-  EXPECT_NE(refusal(other).find("map/map-voxel"), std::string::npos) << refusal(other);
+  EXPECT_NE(refusal(other).find("--map-voxel was"), std::string::npos) << refusal(other);
   other = options_;
   other.initial.pose = {0, 0, 0, 0, 0, 0, 1};
-  EXPECT_NE(refusal(other).find("initial_pose/initial-pose"), std::string::npos) << refusal(other);
+  EXPECT_NE(refusal(other).find("--initial-pose was "), std::string::npos) << refusal(other);
   test::write_text(options_.scans / "times.txt", "0\n0.1\n0.25\n");
   EXPECT_NE(refusal(options_).find("stamps"), std::string::npos) << refusal(options_);
   std::filesystem::remove(options_.scans / "times.txt");
   test::write_raw(options_.scans / "2.bin", std::vector<float>{1, 2, 3, 0});
-  EXPECT_NE(refusal(options_).find("names_and_sizes_sha256"), std::string::npos) << refusal(options_);
+  EXPECT_NE(refusal(options_).find("names, sizes or number of the scans' files differ"), std::string::npos) << refusal(options_);
 }
 
 TEST_F(Run, OtherTimesOfThePointsAreAnotherRun) {

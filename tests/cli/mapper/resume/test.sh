@@ -35,12 +35,12 @@ mapper=$!
 while [ ! -e .out.unfinished/checkpoint ]; do sleep 0.005; done
 kill -9 $mapper
 wait $mapper 2>/dev/null || true
-fails_with 2 'map/map-voxel was' in_a_shell run --resume --map-voxel 0.5 -o out
-height=1.8 fails_with 2 'initial_pose/initial-pose' in_a_shell run --resume -o out
+fails_with 2 '--map-voxel was 0.2, is 0.5;' in_a_shell run --resume --map-voxel 0.5 -o out
+height=1.8 fails_with 2 'another one: --initial-pose was ' in_a_shell run --resume -o out
 truncate -s -1 .out.unfinished/checkpoint
 succeeds in_a_shell run --resume -o out
 expect_in stderr ".out.unfinished/checkpoint: the checkpoint is damaged and cannot be gone on from; beginning anew with the first scan"
 succeeds in_a_shell run --resume -o out
 expect_in stderr "whole already"
-fails_with 2 'is whole already, and of another run: configuration/map/map-voxel was' in_a_shell run --resume --map-voxel 0.5 -o out
+fails_with 2 'is whole already, and of another run: --map-voxel was' in_a_shell run --resume --map-voxel 0.5 -o out
 fails_with 1 "exists already" in_a_shell run -o out
