@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <priormap/core/parallel.hpp>
+#include <priormap/core/process.hpp>
 
 #include "confidence.hpp"
 #include "prior_pieces.hpp"
@@ -110,7 +111,9 @@ class DriveGraph {
     }
     if (in_prior) graph.add_absolute(0, T_map_start_, symmetric(start_information(T_map_start_)));   // what no piece holds must not float, such as the height over walls alone
     pieces.add_to(graph, sigmas);
+    return_freed_memory();   // the same, of those that compared
     graph.optimize(least_gain);
+    return_freed_memory();
     for (std::size_t k = 0; k < size(); ++k) poses_[k] = graph.pose(k);
     pieces.take_offsets(graph);
     weights = graph.piece_weights();
@@ -195,6 +198,7 @@ class DriveGraph {
 
 std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const std::optional<NearTiles>& prior, const ReadScan& read_again,
                                           const JointMethodOptions& options, std::optional<double> known_height_m) {
+  return_freed_memory();   // of the online pass, that its threads keep
   const EstimateOptions& how = options.estimate;
   center_velocities(records);
   DriveGraph graph(records, how);

@@ -198,13 +198,17 @@ void PriorAssembly::renumber(std::vector<PointRecord>& points) const {
 }
 
 PriorAssembly::TileResult PriorAssembly::write_tile(TileKey key, const TileFilter& filter) {
+  constexpr std::size_t large = std::size_t(1) << 20;   // 32 MB, and more again to sort them
+  std::unique_lock alone(large_tile_mutex_, std::defer_lock);
+  std::shared_lock beside_others(large_tile_mutex_, std::defer_lock);
+  if (tiles_.count(key) > large)
+    alone.lock();
+  else
+    beside_others.lock();
   std::vector<PointRecord> points = tiles_.take(key);
   if (filter) filter(key, points);
   if (halo_steps_ > 0) std::erase_if(points, is_halo);
   renumber(points);
-  constexpr std::size_t large = std::size_t(1) << 20;   // 32 MB, and as much again to sort them: one at a time
-  std::unique_lock one_large_tile(large_tile_mutex_, std::defer_lock);
-  if (points.size() > large) one_large_tile.lock();
   std::vector<PointRecord> spare = tiles_.spare();
   sort_and_unite(points, spare);
   tiles_.recycle(std::move(spare));

@@ -2,6 +2,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <shared_mutex>
 #include <span>
 
 #include <priormap/core/atomic_output.hpp>
@@ -59,7 +60,8 @@ class PriorAssembly {
   FeatureSpool features_;
   std::vector<std::uint32_t> feature_index_;   ///< of the number that add_feature gave; known at the end
   std::vector<std::uint16_t> source_index_;    ///< of the position in the sources as they were given
-  std::mutex closed_mutex_, large_tile_mutex_;
+  std::mutex closed_mutex_;
+  std::shared_mutex large_tile_mutex_;   ///< held alone by a large tile, shared by others
   std::map<TileKey, TileResult> closed_;
 };
 

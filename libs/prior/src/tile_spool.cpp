@@ -32,6 +32,7 @@ void TileSpool::add(TileKey key, std::span<const PointRecord> points) {
     const std::lock_guard lock(owner.mutex);
     Tile& tile = owner.tiles[key];
     const std::size_t bytes_before = tile.bytes();
+    tile.count += points.size();
     if (run_bytes) {
       append_runs(points, chunk_for(*run_bytes, tile.runs));
     } else {
@@ -43,7 +44,7 @@ void TileSpool::add(TileKey key, std::span<const PointRecord> points) {
   if (used_bytes_ > memory_bytes_) spill();
 }
 
-void TileSpool::recycle(std::vector<PointRecord>&& points) {
+void TileSpool::recycle(std::vector<PointRecord> points) {
   constexpr std::size_t most_spares = 4, largest = std::size_t(1) << 18;   // 32 MB
   points.clear();
   const std::lock_guard lock(spares_mutex_);
@@ -101,6 +102,13 @@ std::vector<TileKey> TileSpool::keys() const {
   }
   std::sort(keys.begin(), keys.end());
   return keys;
+}
+
+std::size_t TileSpool::count(TileKey key) const {
+  const Shard& owner = shard(key);
+  const std::lock_guard lock(owner.mutex);
+  const auto found = owner.tiles.find(key);
+  return found == owner.tiles.end() ? 0 : found->second.count;
 }
 
 std::vector<PointRecord> TileSpool::take(TileKey key) {

@@ -24,16 +24,19 @@ class TileSpool {
   void add(TileKey key, std::span<const PointRecord> points);
   /// Keys of all tiles that hold points, sorted.
   std::vector<TileKey> keys() const;
+  /// How many points a tile holds.
+  std::size_t count(TileKey key) const;
   /// All points of a tile, in no particular order; the spool forgets them. @throws IoError
   std::vector<PointRecord> take(TileKey key);
   /// Gives memory back that `take` or `spare` gave away, for tiles to come: new memory costs as much as what is done with it.
-  void recycle(std::vector<PointRecord>&& points);
+  void recycle(std::vector<PointRecord> points);
   /// Without points; with the room that a former tile needed, where one is left.
   std::vector<PointRecord> spare();
 
  private:
   /// Points as they are, or as runs where that takes less room; in a few chunks, which are not copied when more come.
   struct Tile {
+    std::size_t count = 0;
     std::vector<PointRecord> points;
     std::vector<std::vector<std::byte>> runs;
     std::vector<SpillFile::Piece> spilled_points, spilled_runs;
@@ -50,6 +53,7 @@ class TileSpool {
     std::unordered_map<TileKey, Tile, KeyHash> tiles;
   };
   Shard& shard(TileKey key) { return shards_[KeyHash{}(key) % shards_.size()]; }
+  const Shard& shard(TileKey key) const { return shards_[KeyHash{}(key) % shards_.size()]; }
   void spill();
 
   std::array<Shard, 64> shards_;

@@ -57,7 +57,9 @@ TEST(TileSpool, GivesBackWhatItTookWhateverItsMemory) {
       expected[key].insert(expected[key].end(), points.begin(), points.end());
     }
     EXPECT_EQ(spool.keys().size(), expected.size());
+    EXPECT_EQ(spool.count({99, 99}), 0u);
     for (auto& [key, points] : expected) {
+      EXPECT_EQ(spool.count(key), points.size());   // spilled, in runs or as they are
       std::vector<PointRecord> taken = spool.take(key);
       std::sort(taken.begin(), taken.end());
       std::sort(points.begin(), points.end());
