@@ -327,7 +327,7 @@ void ModelOptions::validate() const {
 
 ModelReport build_model_prior(const std::vector<std::filesystem::path>& inputs, const PriorOptions& prior_options, const ModelOptions& model_options,
                               const std::filesystem::path& output, Overwrite overwrite, const std::string& generator, int threads, const Events& events) {
-  prior_options.validate();
+  prior_options.validate(events);
   model_options.validate();
   const std::vector<HashedFile> files = distinct_files(inputs);
   Survey survey(prior_options, model_options, events);

@@ -136,7 +136,7 @@ std::vector<HashedFile> distinct_files(const std::vector<std::filesystem::path>&
 OutlineReport build_outline_prior(OutlineInput input, const PriorOptions& prior_options, const OutlineOptions& outline_options,
                                   const std::filesystem::path& output, Overwrite overwrite, const std::string& generator, Diagnostics diagnostics, int threads,
                                   const Events& events) {
-  prior_options.validate();
+  prior_options.validate(events);
   outline_options.validate();
   if (input.footprints.empty()) throw FormatError(input.files.front().path, "holds no building");
   const OutlineFrames frames = resolve_outline_frames(input, prior_options, outline_options, events);

@@ -6,6 +6,8 @@
 
 #include <priormap/core/error.hpp>
 
+#include "data_license.hpp"
+
 namespace priormap {
 namespace {
 
@@ -24,7 +26,7 @@ bool is_date(const std::string& text) {
 
 }  // namespace
 
-void PriorOptions::validate() const {
+void PriorOptions::validate(const Events& events) const {
   if (!bbox.empty()) {
     if (bbox.size() != 4) throw UsageError("--bbox needs four numbers: west,south,east,north");
     for (double v : bbox)
@@ -33,6 +35,7 @@ void PriorOptions::validate() const {
       throw UsageError("--bbox is empty: west must be less than east and south less than north (west,south,east,north)");
   }
   if (!date.empty() && !is_date(date)) throw UsageError("--date '" + date + "' is no date of the form YYYY-MM-DD");
+  if (const auto doubt = license_doubt(license)) events.warn(*doubt);
 }
 
 }  // namespace priormap

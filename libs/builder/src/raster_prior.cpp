@@ -350,7 +350,7 @@ void RasterPriorOptions::validate() const {
 
 RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorOptions& prior_options, const RasterPriorOptions& raster_options, const fs::path& output,
                                 Overwrite overwrite, const std::string& generator, int threads, const Events& events) {
-  prior_options.validate();
+  prior_options.validate(events);
   raster_options.validate();
   const std::vector<RasterInput> inputs = read_inputs(files, prior_options, threads, events);
   const Crs prior = prior_crs(inputs, prior_options, events);

@@ -43,6 +43,16 @@ std::shared_ptr<GDALDataset> open_raster(const std::filesystem::path& file) {
   throw FormatError(file, "is no raster that GDAL reads" + (cause.empty() ? "" : " (" + cause + ")"));
 }
 
+/// Orthophotos lie beside surface models under much the same names, and some maps hold heights as colours.
+void refuse_picture(GDALDataset& dataset, const std::filesystem::path& file) {
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  const GDALColorInterp colour = band.GetColorInterpretation();
+  const GDALDataType type = band.GetRasterDataType();
+  const bool is_small = type == GDT_Byte || type == GDT_UInt16;
+  if (is_small && (colour == GCI_RedBand || colour == GCI_PaletteIndex))
+    throw FormatError(file, "is a picture: its bands are colours, not heights; give the surface or terrain model itself (heights under a wrong label: gdal_translate -b 1 -colorinterp gray)");
+}
+
 Eigen::Affine2d read_transform(GDALDataset& dataset, const std::filesystem::path& file) {
   std::array<double, 6> t{};
   if (dataset.GetGeoTransform(t.data()) != CE_None)
@@ -120,6 +130,7 @@ RasterFile::RasterFile(const std::filesystem::path& file, const std::optional<Cr
   open_->dataset = open_raster(file);
   GDALDataset& dataset = *open_->dataset;
   if (dataset.GetRasterCount() < 1) throw FormatError(file, "holds no raster band; name one of its subdatasets (see gdalinfo)");
+  refuse_picture(dataset, file);
   GDALRasterBand& band = *(open_->band = dataset.GetRasterBand(1));
   world_from_cell_ = read_transform(dataset, file);
 

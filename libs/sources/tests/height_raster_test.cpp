@@ -252,6 +252,30 @@ TEST_F(HeightRasterTest, blocks_of_a_large_raster_agree_with_its_cells) {
   }
 }
 
+TEST_F(HeightRasterTest, a_picture_is_no_raster_of_heights) {
+  EXPECT_NO_THROW(read_raster_facts(write({.type = GDT_Byte}, "gray.tif"))) << "whole metres of flat land";
+  for (const auto& [colour, name] : {std::pair(GCI_RedBand, "rgb.tif"), {GCI_PaletteIndex, "palette.png"}}) {
+    const fs::path file = folder_ / name;
+    auto* memory = GetGDALDriverManager()->GetDriverByName("MEM")->Create("", 10, 8, colour == GCI_RedBand ? 3 : 1, GDT_Byte, nullptr);
+    double transform[6] = {500000, 1, 0, 5000000, 0, -1};
+    memory->SetGeoTransform(transform);
+    GDALColorTable colours;
+    const GDALColorEntry black = {0, 0, 0, 255};
+    colours.SetColorEntry(0, &black);
+    if (colour == GCI_PaletteIndex) memory->GetRasterBand(1)->SetColorTable(&colours);
+    if (colour == GCI_RedBand)
+      for (int band = 1; band <= 3; ++band) memory->GetRasterBand(band)->SetColorInterpretation(GDALColorInterp(GCI_RedBand + band - 1));
+    GDALClose(GetGDALDriverManager()->GetDriverByName(colour == GCI_RedBand ? "GTiff" : "PNG")->CreateCopy(file.c_str(), memory, false, nullptr, nullptr, nullptr));
+    GDALClose(memory);
+    try {
+      read_raster_facts(file);
+      ADD_FAILURE() << name;
+    } catch (const FormatError& error) {
+      EXPECT_NE(std::string(error.what()).find(std::string(name) + ": is a picture"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST_F(HeightRasterTest, unusable_files_are_named_with_the_cause) {
   EXPECT_THROW(open(folder_ / "none.tif"), IoError);
   std::ofstream(folder_ / "text.tif") << "no raster";

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <priormap/core/events.hpp>
 #include <priormap/core/option_field.hpp>
 #include <priormap/geodesy/tile_grid.hpp>
 
@@ -36,7 +37,8 @@ struct PriorOptions {
   }
 
   /// @throws UsageError for a bbox that is not four numbers with W < E and S < N, or a date that is no date.
-  void validate() const;
+  /// Warns of a licence that is no SPDX identifier.
+  void validate(const Events& events = {}) const;
   double spacing_or(double fallback_m) const { return spacing_m.value_or(fallback_m); }
 };
 
