@@ -105,6 +105,8 @@ function(priormap_install)
   install(FILES "${PROJECT_BINARY_DIR}/priormapConfig.cmake" "${PROJECT_BINARY_DIR}/priormapConfigVersion.cmake"
     DESTINATION "${CMAKE_INSTALL_LIBDIR}/cmake/priormap")
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/schemas/" DESTINATION "${CMAKE_INSTALL_DATADIR}/priormap/schemas")
-  install(FILES README.md CHANGELOG.md LICENSE NOTICE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-  install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" FILES_MATCHING PATTERN "*.md" PATTERN man EXCLUDE)
+  # Laid out as in the source tree, so that links hold in both places.
+  install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE NOTICE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation)
+  install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation FILES_MATCHING PATTERN "*.md")
+  install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documentation USE_SOURCE_PERMISSIONS PATTERN quickstart.sh EXCLUDE)
 endfunction()
