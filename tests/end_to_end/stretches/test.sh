@@ -23,7 +23,7 @@ mapper=$!
 while [ ! -e .killed.unfinished/checkpoint ]; do sleep 0.01; done
 kill -9 $mapper
 wait $mapper 2>/dev/null || true
-fails_with 2 "stretches" in_a_shell run --resume -o killed
+fails_with 2 "another one: --jobs was above 1, is 1;" in_a_shell run --quiet --resume -o killed
 succeeds in_a_shell run --jobs 3 --resume -o killed
 expect_in stderr "going on after"
 same jobs2 killed
