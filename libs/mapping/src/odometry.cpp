@@ -2,12 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
 #include "sweep_motion.hpp"
 
 namespace priormap {
 namespace {
+
+SurfelCloud every(const SurfelCloud& scan, std::size_t stride) {
+  SurfelCloud some{scan.origin, {}};
+  for (std::size_t i = 0; i < scan.size(); i += std::max<std::size_t>(stride, 1)) some.surfels.push_back(scan.surfels[i]);
+  return some;
+}
 
 Eigen::Vector3d turn_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) { return log_so3(Eigen::Quaterniond(a.linear().transpose() * b.linear())); }
 
@@ -21,11 +28,21 @@ bool UsualFit::admit(const TargetResult& match, bool after_loss) const {
   return after_loss ? share > 0.85 && rmse < 1.8 : share > 0.7 || rmse < 2;
 }
 
+bool UsualFit::has_usual_share(const MatchFigures& match) const {
+  constexpr double least_share = 0.85;   // of what is usual
+  return static_cast<double>(match.num_inliers) >= least_share * share_ * static_cast<double>(match.num_correspondences);
+}
+
 bool UsualFit::doubts(const MatchFigures& match) const {
   constexpr int least = 5;
-  constexpr double least_share = 0.85, most_rmse = 1.4;   // of what is usual
+  constexpr double most_rmse = 1.8;   // of what is usual
   if (count_ < least || match.num_correspondences == 0) return false;
-  return static_cast<double>(match.num_inliers) < least_share * share_ * static_cast<double>(match.num_correspondences) || match.inlier_rmse_m > most_rmse * rmse_m_;
+  return !has_usual_share(match) || match.inlier_rmse_m > most_rmse * rmse_m_;
+}
+
+bool UsualFit::may_be(const MatchFigures& match) const {
+  constexpr double most_rmse = 3;
+  return has_usual_share(match) && match.inlier_rmse_m < most_rmse * rmse_m_;
 }
 
 void UsualFit::take(const MatchFigures& match) {
@@ -105,16 +122,38 @@ OdometryStep Odometry::found_again(const SurfelCloud& scan) {
   return matched(scan, registration_.search(scan, targets, T_odom_last_, circle).front().match.T_map_scan);
 }
 
-/// Scans may be missing in a recording. Where one fits worse than usual, it is tried where the motion carried on would have led by then, until it fits as usual. None where it never does.
-std::optional<OdometryStep> Odometry::found_ahead(const SurfelCloud& scan, const OdometryStep& found, double duration_s) {
-  constexpr double farthest_m = 40, step_m = 1, least_way_m = 0.1;
-  const double speed_m_s = velocity_.tail<3>().norm();
-  if (num_lost_ > 0 || speed_m_s * duration_s < least_way_m || !fits_.doubts(found.figures)) return std::nullopt;
-  for (double ahead_m = step_m; ahead_m <= farthest_m; ahead_m += step_m) {
-    const OdometryStep ahead = matched(scan, moved_on(T_odom_last_, velocity_, ahead_m / speed_m_s));
+/// Scans may be missing in a recording. Where one fits worse than usual, it is looked for where the sensor may be by then.
+std::optional<OdometryStep> Odometry::found_beyond_gap(const SurfelCloud& scan, const OdometryStep& found, double duration_s) {
+  constexpr double least_way_m = 0.1;
+  if (num_lost_ > 0 || !fits_.doubts(found.figures)) return std::nullopt;
+  if (velocity_.tail<3>().norm() * duration_s >= least_way_m)
+    if (const auto straight_on = found_straight_on(scan)) return straight_on;
+  return found_around(scan, found);
+}
+
+/// Where the motion carried on would have led, until it fits as usual.
+std::optional<OdometryStep> Odometry::found_straight_on(const SurfelCloud& scan) {
+  constexpr double farthest_m = 40, step_m = 1;
+  for (double way_m = step_m; way_m <= farthest_m; way_m += step_m) {
+    const OdometryStep ahead = matched(scan, moved_on(T_odom_last_, velocity_, way_m / velocity_.tail<3>().norm()));
     if (ahead.joined && !fits_.doubts(ahead.figures)) return ahead;
   }
   return std::nullopt;
+}
+
+/// Around what lies ahead, also round a corner: starts so near each other that registering some of the surfels leads from one of them to the right place, where all fit far better.
+std::optional<OdometryStep> Odometry::found_around(const SurfelCloud& scan, const OdometryStep& found) {
+  constexpr double radius_m = 20, behind_m = 4, clear_gain = 0.05;   // a surfel
+  constexpr std::size_t surfels = 150;
+  const SurfelCloud some = every(scan, scan.size() / surfels);
+  const PoseSearchOptions starts{.radius_m = radius_m, .yaw_rad = 1.2, .step_m = 3, .step_rad = 0.1, .surfels = surfels, .refined = std::numeric_limits<int>::max()};
+  Eigen::Isometry3d centre = T_odom_last_;
+  if (const double speed_m_s = velocity_.tail<3>().norm(); speed_m_s > 0) centre.translation() += (radius_m - behind_m) / speed_m_s * (centre.linear() * velocity_.tail<3>());
+  const std::array targets = {JointTarget{&local_map_, options_.local_sigma_m, 1.0}};
+  const OdometryStep elsewhere = matched(scan, registration_.search(some, targets, centre, starts).front().match.T_map_scan);
+  if (!elsewhere.joined || !fits_.may_be(elsewhere.figures)) return std::nullopt;
+  const auto fit = [&](const Eigen::Isometry3d& T) { return registration_.score(scan, targets, T, 0) / static_cast<double>(scan.size()); };
+  return fit(elsewhere.T_odom_sensor) > fit(found.T_odom_sensor) + clear_gain ? std::optional(elsewhere) : std::nullopt;
 }
 
 OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
@@ -127,8 +166,8 @@ OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
   } else {
     const double duration_s = time_since_last(stamp_s);
     found = matched_in_motion(scan, duration_s);
-    const auto ahead = found_ahead(scan, found, duration_s);
-    if (ahead) found = *ahead;
+    const auto beyond_gap = found_beyond_gap(scan, found, duration_s);
+    if (beyond_gap) found = *beyond_gap;
     const Eigen::Isometry3d guess = found.T_odom_sensor;
     if (!found.joined && num_lost_ > 0) found = found_again(scan);
     if (!found.joined) {
@@ -144,7 +183,9 @@ OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
     if (found.began_anew) {
       velocity_.setZero();
       rocking_rad_ = unknown_rocking_rad;
-    } else if (num_lost_ == 0 && !ahead) {
+    } else if (beyond_gap) {
+      velocity_.head<3>().setZero();   // how it turns now is not known
+    } else if (num_lost_ == 0) {
       velocity_ = steady_velocity(T_odom_last_, found.T_odom_sensor, duration_s);
       rocking_rad_ = std::max(turn_between(T_odom_last_, found.T_odom_sensor).head<2>().norm(), fading * rocking_rad_);
     }

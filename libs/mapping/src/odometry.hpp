@@ -27,9 +27,13 @@ class UsualFit {
   bool admit(const TargetResult& match, bool after_loss) const;
   /// Whether a match is clearly worse than those before, though it may be admitted.
   bool doubts(const MatchFigures& match) const;
+  /// Whether a match elsewhere may be the true one, though the local map is worse known there.
+  bool may_be(const MatchFigures& match) const;
   void take(const MatchFigures& match);
 
  private:
+  bool has_usual_share(const MatchFigures& match) const;
+
   double share_ = 0, rmse_m_ = 0;
   int count_ = 0;
 };
@@ -49,7 +53,9 @@ class Odometry {
   OdometryStep matched_after(const SurfelCloud& scan, double duration_s);
   OdometryStep matched_in_motion(SurfelCloud& scan, double duration_s);
   OdometryStep found_again(const SurfelCloud& scan);
-  std::optional<OdometryStep> found_ahead(const SurfelCloud& scan, const OdometryStep& found, double duration_s);
+  std::optional<OdometryStep> found_beyond_gap(const SurfelCloud& scan, const OdometryStep& found, double duration_s);
+  std::optional<OdometryStep> found_straight_on(const SurfelCloud& scan);
+  std::optional<OdometryStep> found_around(const SurfelCloud& scan, const OdometryStep& found);
 
   static constexpr double unknown_rocking_rad = 0.07;
   OdometryOptions options_;

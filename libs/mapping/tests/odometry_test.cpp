@@ -32,5 +32,24 @@ TEST(Odometry, RingsOnTheGroundDoNotHideThatThePlatformBeginsRocking) {
   }
 }
 
+/// Scans are missing in the recording, and the stamps do not tell.
+TEST(Odometry, GoesOnBeyondAGapAlsoRoundACorner) {
+  constexpr int before = 10;
+  const street::World world = street::town(60, 3);
+  for (const Eigen::Isometry3d& T_beyond : {street::pose(24, 0, 1.7, 0), street::pose(15, 3, 1.7, 0.9), street::pose(38, -1, 1.7, -0.1)}) {
+    ScanReducer reducer(1.0);
+    Odometry odometry({}, Vector6d::Zero());
+    for (int k = 0; k < before + 5; ++k) {
+      const Eigen::Isometry3d T = k < before ? street::pose(0.8 * k, 0, 1.7, 0) : T_beyond * street::pose(0.8 * (k - before), 0, 0, 0);
+      SurfelCloud scan = reducer.reduce(street::scan(world, T, {}, static_cast<unsigned>(k)));
+      const OdometryStep step = odometry.step(scan, 0.1 * k);
+      const Eigen::Isometry3d truth = street::pose(0, 0, 1.7, 0).inverse() * T;
+      EXPECT_EQ(step.joined, k > 0);
+      EXPECT_LT(street::distance(step.T_odom_sensor, truth), 0.1) << T_beyond.translation().transpose() << ", scan " << k;
+      EXPECT_LT(street::angle(step.T_odom_sensor, truth), 0.01) << T_beyond.translation().transpose() << ", scan " << k;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace priormap
