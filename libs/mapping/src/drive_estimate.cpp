@@ -229,7 +229,7 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
       pieces.clear_matches();
       // Coarse to fine: until height and tilt are known, what strays is not yet an outlier.
       const double coarse = pass == 0 ? 3 : 1;
-      const PieceNoise noise{how.surface_sigma_m, how.ground_surface_sigma_m, coarse * how.kernel_width, coarse * how.ground_kernel_width};
+      const PieceNoise noise{how.surface_sigma_m, how.ground_surface_sigma_m, coarse * how.kernel_width, coarse * how.ground_kernel_width, how.turn_sigma_rad};
       compare([&](std::size_t k, const Eigen::Isometry3d& T, const std::vector<PlaneMatch>& matches) { pieces.add(k, T, matches, noise); });
     }
     const bool last = !prior || pass + 1 == how.passes;

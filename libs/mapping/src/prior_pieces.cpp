@@ -73,17 +73,29 @@ PieceKey key_of(const PlaneMatch& match, PieceKind kind, double piece_m) {
 
 }  // namespace
 
-PieceEquations equations_of(const PlaneMatch& match, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, double surface_sigma_m, double kernel_width) {
+PieceEquations equations_of(const std::vector<PlaneMatch>& matches, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, const PieceNoise& noise, bool ground) {
+  using Vector10d = Eigen::Matrix<double, 10, 1>;   // and the angle
+  const double surface_sigma_m = ground ? noise.ground_sigma_m : noise.surface_sigma_m, kernel_width = ground ? noise.ground_kernel_width : noise.kernel_width;
   const Eigen::Matrix3d R = T_map_sensor.linear();
-  const Eigen::Vector3d n_sensor = R.transpose() * match.normal;
-  const Eigen::Vector3d p_sensor = R.transpose() * (match.p_map - T_map_sensor.translation());
-  Vector9d J;  // the residual grows with the point along the normal and shrinks when the piece moves along it
-  J << p_sensor.cross(n_sensor), n_sensor, -match.normal;
-  const double variance = match.scan_variance_m2 + surface_sigma_m * surface_sigma_m;
-  const double left = match.residual_m - match.normal.dot(offset_m);
-  const double root = 1 / (1 + left * left / (variance * kernel_width * kernel_width));
-  const double weight = root * root / variance;
-  return {(weight * J * J.transpose()).cast<float>(), (weight * match.residual_m * J).cast<float>()};
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const PlaneMatch& match : matches) middle += match.p_map / static_cast<double>(matches.size());
+  Eigen::Matrix<double, 10, 10> H = Eigen::Matrix<double, 10, 10>::Zero();
+  Vector10d g = Vector10d::Zero();
+  for (const PlaneMatch& match : matches) {
+    const Eigen::Vector3d n_sensor = R.transpose() * match.normal;
+    const Eigen::Vector3d p_sensor = R.transpose() * (match.p_map - T_map_sensor.translation());
+    Vector10d J;  // the residual grows with the point along the normal and shrinks when the piece moves or turns along it
+    J << p_sensor.cross(n_sensor), n_sensor, -match.normal, -match.normal.dot(Eigen::Vector3d::UnitZ().cross(match.p_map - middle));
+    const double variance = match.scan_variance_m2 + surface_sigma_m * surface_sigma_m;
+    const double left = match.residual_m - match.normal.dot(offset_m);
+    const double root = 1 / (1 + left * left / (variance * kernel_width * kernel_width));
+    const double weight = root * root / variance;
+    H += weight * J * J.transpose();
+    g += weight * match.residual_m * J;
+  }
+  const double turn_variance = noise.turn_sigma_rad * noise.turn_sigma_rad;
+  const Vector9d share = H.topRightCorner<9, 1>() * (turn_variance / (1 + turn_variance * H(9, 9)));
+  return {(H.topLeftCorner<9, 9>() - share * H.bottomLeftCorner<1, 9>()).cast<float>(), (g.head<9>() - share * g[9]).cast<float>()};
 }
 
 PiecesOfPrior::PiecesOfPrior(double piece_m, double range_m, const LengthsByKind& expected_outset_m, double surfel_m)
@@ -142,31 +154,25 @@ void PiecesOfPrior::clear_matches() {
 }
 
 void PiecesOfPrior::add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches, const PieceNoise& noise) {
-  std::map<PieceId, PieceEquations> equations;
+  std::map<PieceId, std::vector<PlaneMatch>> heard;
   const Eigen::Vector3d& sensor = T_map_sensor.translation();
   for (const PlaneMatch& match : matches) {
     const auto seen = as_seen(match, least_spread_m_);
     const auto id = seen && faces_alike(match, *seen) ? piece_of(*seen, sensor) : std::nullopt;
     if (!id) continue;
     Piece& piece = pieces_[*id];
-    const bool ground = piece.kind == PieceKind::ground;
-    PlaneMatch heard = ground ? levelled(*seen) : *seen;
-    if (stands_upright(piece.kind)) {
-      const double side = side_of(heard, sensor);
-      piece.sum_of_normals += side * heard.normal;
-      piece.num_normals += 1;
-      // Buildings were compared where they had been moved to, by their offsets and the outset.
-      heard.residual_m += piece.kind == PieceKind::building ? heard.normal.dot(piece.offset_m) : side * outset_m_[piece.kind];
-    }
-    const PieceEquations one = equations_of(heard, T_map_sensor, piece.offset_m, ground ? noise.ground_sigma_m : noise.surface_sigma_m,
-                                            ground ? noise.ground_kernel_width : noise.kernel_width);
-    PieceEquations& sum = equations[*id];
-    sum.H += one.H;
-    sum.g += one.g;
+    PlaneMatch& one = heard[*id].emplace_back(piece.kind == PieceKind::ground ? levelled(*seen) : *seen);
+    if (!stands_upright(piece.kind)) continue;
+    const double side = side_of(one, sensor);
+    piece.sum_of_normals += side * one.normal;
+    piece.num_normals += 1;
+    // Buildings were compared where they had been moved to, by their offsets and the outset.
+    one.residual_m += piece.kind == PieceKind::building ? one.normal.dot(piece.offset_m) : side * outset_m_[piece.kind];
   }
-  for (const auto& [id, sum] : equations) {
-    ++pieces_[id].times_seen;
-    factors_.push_back({k, id, T_map_sensor, sum});
+  for (const auto& [id, of_piece] : heard) {
+    Piece& piece = pieces_[id];
+    ++piece.times_seen;
+    factors_.push_back({k, id, T_map_sensor, equations_of(of_piece, T_map_sensor, piece.offset_m, noise, piece.kind == PieceKind::ground)});
   }
 }
 

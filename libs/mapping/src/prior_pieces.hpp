@@ -40,10 +40,12 @@ struct PieceNoise {
   double ground_sigma_m;        ///< roads are smoother than facades
   double kernel_width;          ///< Geman-McClure, in standard deviations
   double ground_kernel_width;   ///< the same on the ground, where what does not belong to it is all to one side
+  double turn_sigma_rad = 0;    ///< of the angle by which a piece is turned upright, about the middle of what a scan sees of it
 };
 
-/// Normal equations of one comparison. @param offset_m  of the piece, as far as it is known: what strays from there is an outlier
-PieceEquations equations_of(const PlaneMatch& match, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, double surface_sigma_m, double kernel_width);
+/// Normal equations of what a scan sees of one piece; the angle by which that is turned is eliminated.
+/// @param offset_m  of the piece, as far as it is known: what strays from there is an outlier   @param ground  whether surface and kernel are those of the ground
+PieceEquations equations_of(const std::vector<PlaneMatch>& matches, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& offset_m, const PieceNoise& noise, bool ground = false);
 
 /// Shares of the variance of their offsets that the pieces of a kind within sight of one place have in common.
 struct PieceShares {

@@ -22,12 +22,12 @@ TEST(PriorPieces, TheEquationsAreTheDerivativesOfTheSquaredResidual) {
     const double r = normal.dot(retract(T, z.head<6>()) * p_sensor - on_plane - z.tail<3>());
     return 0.5 * r * r / (0.1 * 0.1 + 0.01);
   };
-  const PieceEquations off = equations_of(match_at(0.2), T, Eigen::Vector3d::Zero(), 0.1, 1e6);
+  const PieceEquations off = equations_of({match_at(0.2)}, T, Eigen::Vector3d::Zero(), noise);
   for (int i = 0; i < 9; ++i) {
     const Vector9d d = 1e-5 * Vector9d::Unit(i);
     EXPECT_NEAR(off.g[i], (cost(0.2, d) - cost(0.2, -d)) / 2e-5, 1e-4) << i;
   }
-  const PieceEquations on = equations_of(match_at(0), T, Eigen::Vector3d::Zero(), 0.1, 1e6);   // where Gauss and Newton agree
+  const PieceEquations on = equations_of({match_at(0)}, T, Eigen::Vector3d::Zero(), noise);   // where Gauss and Newton agree
   EXPECT_TRUE(off.H.isApprox(on.H));
   constexpr double step = 1e-4;
   for (int i = 0; i < 9; ++i)
@@ -41,8 +41,9 @@ TEST(PriorPieces, TheEquationsAreTheDerivativesOfTheSquaredResidual) {
 TEST(PriorPieces, WhatStraysFromTheKnownOffsetIsAnOutlier) {
   const Eigen::Isometry3d T = pose(0, 0, 0);
   const PlaneMatch match{{10, 0, 2}, {1, 0, 0}, 1.0, 0};
-  EXPECT_LT(equations_of(match, T, {0, 0, 0}, 0.1, 3).H(3, 3), 2);
-  EXPECT_NEAR(equations_of(match, T, {1, 0, 0}, 0.1, 3).H(3, 3), 100, 1e-3);
+  const PieceNoise narrow{0.1, 0.1, 3, 3};
+  EXPECT_LT(equations_of({match}, T, {0, 0, 0}, narrow).H(3, 3), 2);
+  EXPECT_NEAR(equations_of({match}, T, {1, 0, 0}, narrow).H(3, 3), 100, 1e-3);
 }
 
 /// What a scan sees of a wall with that level normal: a metre of it, as flat as `spread_m`.
@@ -53,6 +54,24 @@ PlaneMatch wall_match(const Eigen::Vector3d& p, const Eigen::Vector3d& facing, d
   match.plane_mean = p - residual_m * facing;
   match.scan_covariance = (along * along.transpose() + Eigen::Vector3d::UnitZ() * Eigen::RowVector3d::UnitZ()) / 12 + variance * facing * facing.transpose();
   return match;
+}
+
+/// Outlines are drawn turned by a degree: however many points a wall has, it tells a heading no better.
+TEST(PriorPieces, AWallTellsTheHeadingNoSurerThanItMayBeTurned) {
+  const Eigen::Isometry3d T = pose(0, 0, 0.3);
+  std::vector<PlaneMatch> wall;
+  for (int i = -20; i <= 20; ++i) wall.push_back(wall_match({30 + 0.5 * i, 8, 3}, {0, -1, 0}, 0.02 * i, 7));   // seen as if it were turned by 0.04
+  PieceNoise turned = noise;
+  turned.turn_sigma_rad = 0.02;
+  const PieceEquations stiff = equations_of(wall, T, Eigen::Vector3d::Zero(), noise), loose = equations_of(wall, T, Eigen::Vector3d::Zero(), turned);
+  Vector9d about_middle = Vector9d::Zero();   // of the pose, about the middle of the wall
+  about_middle.head<3>() = T.linear().transpose() * Eigen::Vector3d::UnitZ();
+  about_middle.segment<3>(3) = T.linear().transpose() * Eigen::Vector3d::UnitZ().cross(T.translation() - Eigen::Vector3d(30, 8, 3));
+  const auto information = [&](const PieceEquations& e) { return about_middle.dot(e.H.cast<double>() * about_middle); };
+  EXPECT_GT(information(stiff), 1e4);   // 0.6 degrees or better
+  EXPECT_NEAR(1 / information(loose), 1 / information(stiff) + 0.02 * 0.02, 1e-7);
+  EXPECT_NEAR(about_middle.dot(loose.g.cast<double>()) / information(loose), about_middle.dot(stiff.g.cast<double>()) / information(stiff), 1e-5);   // as turned as before, less surely
+  EXPECT_NEAR(loose.H(7, 7), stiff.H(7, 7), 1e-3 * stiff.H(7, 7));   // where it is, it tells as before
 }
 
 TEST(PriorPieces, TheWallsOfABuildingAreOnePieceThoseOfNoneOneACell) {

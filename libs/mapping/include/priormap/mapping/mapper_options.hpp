@@ -96,6 +96,7 @@ struct EstimateOptions {
   double wall_sigma_m = 0.3;
   double roof_overhang_m = 0.2;
   double slope_sigma_m = 0.3;
+  double turn_sigma_rad = 0.02;
   double ground_sigma_m = 0.1;
   double surface_sigma_m = 0.1;
   double ground_surface_sigma_m = 0.03;
@@ -116,6 +117,7 @@ struct EstimateOptions {
     visit("building-sigma", building_sigma_m, {"standard deviation of the offsets of the prior's buildings to begin with, unless the prior states more; it is estimated", "m", 1e-3, 100});
     visit("wall-sigma", wall_sigma_m, {"the same of walls that belong to no building known", "m", 1e-3, 100});
     visit("roof-overhang", roof_overhang_m, {"by which the walls of a surface model are expected to stand outside of the real ones, for it sees roofs; it is estimated", "m", 0, 10});
+    visit("turn-sigma", turn_sigma_rad, {"sigma of the angle by which a building or another piece is turned upright", "rad", 0, 1});
     visit("slope-sigma", slope_sigma_m, {"the same of slopes, such as the edges of a surface model", "m", 1e-3, 100});
     visit("ground-sigma", ground_sigma_m, {"the same of level ground", "m", 1e-3, 100});
     visit("common-share", common_share, {"share of the variance of the buildings' offsets that those within sight of one place have in common, which their number does not average out", "", 0, 1});
