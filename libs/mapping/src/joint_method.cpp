@@ -4,10 +4,10 @@
 #include <priormap/core/parallel.hpp>
 #include <priormap/registration/scan_reducer.hpp>
 
-#include "background_tracker.hpp"
 #include "drive_estimate.hpp"
 #include "mapping_method.hpp"
 #include "odometry.hpp"
+#include "prior_tracker.hpp"
 #include "stretch.hpp"
 #include "sweep_motion.hpp"
 
@@ -19,7 +19,7 @@ class JointMethod : public MappingMethod {
  public:
   JointMethod(const JointMethodOptions& options, const std::optional<NearTiles>& prior, const FirstPose& first)
       : options_(options), prior_(prior), known_height_m_(first.knows_height ? std::optional(first.T_map_sensor.translation().z()) : std::nullopt), first_velocity_(steady_velocity(Eigen::Isometry3d::Identity(), first.motion, first.motion_s)), reducer_(options.reduce_m),
-        odometry_(options.odometry, first_velocity_), tracker_(PriorTracker(options.tracking, options.reduce_m, prior, first.T_map_sensor), prior ? prior->threads() : 1) {}
+        odometry_(options.odometry, first_velocity_), tracker_(options.tracking, options.reduce_m, prior, first.T_map_sensor) {}
 
   PrepareScan preparation() const override {
     return [reducer = ScanReducer(options_.reduce_m)](const Scan& scan) mutable { return ReadyScan{facts_of(scan), reducer.reduce(scan.points), {}, {}}; };
@@ -46,7 +46,6 @@ class JointMethod : public MappingMethod {
   }
 
   std::vector<EstimatedPose> finish(const ReadScan& read_again) override {
-    tracker_.wait();
     return estimate_drive(records_, prior_, read_again, options_, known_height_m_);
   }
 
@@ -59,9 +58,11 @@ class JointMethod : public MappingMethod {
     if (!records_.empty()) mapped.local = step.figures;
     if (step.began_anew) tracker_.begin_anew();
     const bool lost = !records_.empty() && !step.joined;
-    if (const auto heard = tracker_.follow(step.T_odom_sensor, lost ? nullptr : surfels)) {
-      mapped.prior = heard->figures;
-      last_match_ = heard;
+    if (!lost && tracker_.asks(step.T_odom_sensor)) {
+      if (const auto match = tracker_.follow(surfels(), step.T_odom_sensor)) {
+        mapped.prior = match->figures;
+        last_match_ = match;
+      }
     }
     mapped.T_map_online = tracker_.T_map_odom() * step.T_odom_sensor;
     mapped.verdict = lost ? Verdict::lost : verdict_by_prior();
@@ -111,7 +112,7 @@ class JointMethod : public MappingMethod {
   ScanReducer reducer_;
   Odometry odometry_;
   Eigen::Isometry3d T_odom_own_ = Eigen::Isometry3d::Identity();   // of the frame of that odometry, where it began within the drive
-  BackgroundTracker tracker_;
+  PriorTracker tracker_;
   std::optional<PriorMatch> last_match_;
   std::vector<ScanRecord> records_;
 };

@@ -27,8 +27,6 @@ class PriorTracker {
   PriorTracker(const TrackingOptions& options, double scan_voxel_m, const std::optional<NearTiles>& prior, const Eigen::Isometry3d& T_map_first);
   /// Whether the prior is to be asked at that scan.
   bool asks(const Eigen::Isometry3d& T_odom_sensor) const;
-  /// Whether it was never asked since the drive began, at first or anew.
-  bool is_fresh() const { return !T_odom_last_; }
   /// The prior's word is asked each `keyframe_m`. @return what it was
   std::optional<PriorMatch> follow(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor);
   /// The odometry has a gap: the next scan is looked for around its pose as the first one was.

@@ -33,8 +33,7 @@ struct MappedScan {
   bool standstill = false;          ///< no pose of its own: repeats the last one
   std::size_t num_points = 0;       ///< as read, without those that are no measurement
   std::size_t num_skipped = 0;      ///< those
-  std::optional<MatchFigures> local;
-  std::optional<MatchFigures> prior;   ///< heard with this scan; of one at most two before
+  std::optional<MatchFigures> local, prior;
   double step_s = 0;                ///< from reading the file to the online pose
 };
 
