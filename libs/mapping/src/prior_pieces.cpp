@@ -147,6 +147,7 @@ void PiecesOfPrior::move_buildings(PatchCloud& patches) const {
 void PiecesOfPrior::clear_matches() {
   for (Piece& piece : pieces_) {
     piece.times_seen = 0;
+    piece.information_per_m2 = 0;
     piece.sum_of_normals.setZero();
     piece.num_normals = 0;
   }
@@ -171,15 +172,26 @@ void PiecesOfPrior::add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const s
   }
   for (const auto& [id, of_piece] : heard) {
     Piece& piece = pieces_[id];
+    const PieceEquations equations = equations_of(of_piece, T_map_sensor, piece.offset_m, noise, piece.kind == PieceKind::ground);
     ++piece.times_seen;
-    factors_.push_back({k, id, T_map_sensor, equations_of(of_piece, T_map_sensor, piece.offset_m, noise, piece.kind == PieceKind::ground)});
+    piece.information_per_m2 += equations.H.bottomRightCorner<3, 3>().trace();
+    factors_.push_back({k, id, T_map_sensor, equations});
   }
+}
+
+/// Near leaves and hedges some step of a surface model always lies, wherever the drive is thought to be; a scan matches a surfel or two of them. Of a wall it sees more.
+double PiecesOfPrior::trust(const Piece& piece) {
+  constexpr double of_three_surfels = 300;   // 1/m^2
+  if (piece.kind != PieceKind::wall && piece.kind != PieceKind::slope) return 1;
+  const double ratio = piece.information_per_m2 / (of_three_surfels * static_cast<double>(piece.times_seen));
+  return 1 - 1 / (1 + std::pow(ratio, 4));
 }
 
 void PiecesOfPrior::add_to(PoseGraph& graph, const PieceSigmas& sigmas) const {
   for (const Piece& piece : pieces_) graph.add_piece(Eigen::Vector3d::Constant(sigmas[piece.kind]));
   for (PieceFactor factor : factors_) {
-    const float share = 1.0f / static_cast<float>(pieces_[factor.piece].times_seen);
+    const Piece& piece = pieces_[factor.piece];
+    const float share = static_cast<float>(trust(piece) / static_cast<double>(piece.times_seen));
     factor.equations.H *= share;
     factor.equations.g *= share;
     graph.add_piece_factor(factor.pose, factor.piece, factor.T_map_sensor, factor.equations);

@@ -94,12 +94,15 @@ class PiecesOfPrior {
     PieceKind kind;
     Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
     std::size_t times_seen = 0;
+    double information_per_m2 = 0;   // of where it is, by all scans
     double most_voices = 0, voices = 0;   // for that offset, and in all
     Eigen::Vector3d sum_of_normals = Eigen::Vector3d::Zero();   // outward, of its walls as compared
     double num_normals = 0;
     /// Along which all its walls would seem shifted if they stood outside of the real ones by 1 m; nearly zero where it is seen from all sides.
     Eigen::Vector3d outward() const { return num_normals > 0 ? Eigen::Vector3d(sum_of_normals / num_normals) : Eigen::Vector3d::Zero(); }
   };
+  /// Share that counts of what scans tell of a piece: little where they hardly see it.
+  static double trust(const Piece& piece);
   /// The piece that a comparison is with; none where it tells nothing.
   std::optional<PieceId> piece_of(const PlaneMatch& match, const Eigen::Vector3d& sensor);
   void take_outset(PieceKind kind);

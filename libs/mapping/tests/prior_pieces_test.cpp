@@ -123,6 +123,30 @@ TEST(PriorPieces, HowAWallOfNoFeatureFacesTheScanTells) {
   EXPECT_EQ(equations(trunk).first, 0u);
 }
 
+/// Near a hedge some step of a surface model always lies, whatever the pose: a surfel or two of it a scan agree with any.
+TEST(PriorPieces, WhatAScanHardlySeesOfAWallHoldsNoDrive) {
+  const auto moved_m = [](int surfels, std::uint32_t feature) {
+    PiecesOfPrior pieces(20, 70);
+    for (PoseId k = 0; k < 5; ++k) {
+      std::vector<PlaneMatch> seen;
+      for (int i = 0; i < surfels; ++i) seen.push_back(wall_match({30, 5 + 0.5 * i, 2}, {-1, 0, 0}, 0.3, feature));
+      pieces.add(k, pose(0, 0, 0), seen, noise);
+    }
+    PoseGraph graph({.absolute_width = 0});
+    for (PoseId k = 0; k < 5; ++k) graph.add_pose(pose(0, 0, 0));
+    for (PoseId k = 1; k < 5; ++k) graph.add_between(0, k, Eigen::Isometry3d::Identity(), 1e8 * Matrix6d::Identity());
+    Matrix6d about_there = level_information();
+    about_there.bottomRightCorner<3, 3>() = Eigen::Matrix3d::Identity() / (0.3 * 0.3);
+    graph.add_absolute(0, pose(0, 0, 0), about_there);
+    pieces.add_to(graph, {{0.3, 0.3, 0.3, 0.3}});
+    graph.optimize();
+    return (graph.pose(0).translation() - pose(0, 0, 0).translation()).norm();
+  };
+  EXPECT_LT(moved_m(1, PointCloud::no_feature), 0.05);
+  EXPECT_NEAR(moved_m(10, PointCloud::no_feature), 0.15, 0.02);   // half of 0.3: the piece and the pose are as sure of their places
+  EXPECT_GT(moved_m(1, 7), 0.1);   // an outline is a wall, however little of it is seen
+}
+
 /// Houses on one side of a road leave open whether they stand outside of themselves or the road lies elsewhere: then the overhang of roofs is taken for what it usually is.
 TEST(PriorPieces, OnOneSideAloneWallsStandAsFarOutsideAsExpected) {
   const auto moved_m = [](double expected_m) {
