@@ -53,6 +53,17 @@ std::vector<Keyframe> keyframes_of(const std::vector<ScanRecord>& records, const
   return keyframes;
 }
 
+/// Beyond a gap in the odometry, what came before the drive was found again lies where the odometry says from there.
+void locate_backwards(std::vector<ScanRecord>& records) {
+  for (std::size_t i = records.size(); i-- > 1;) {
+    const ScanRecord& after = records[i];
+    ScanRecord& before = records[i - 1];
+    if (!after.located || before.located || after.odometry.began_anew) continue;
+    before.T_map_online = after.T_map_online * after.odometry.T_odom_sensor.inverse() * before.odometry.T_odom_sensor;
+    before.located = true;
+  }
+}
+
 /// Compares scans with the prior where they are thought to have been taken.
 class PriorComparison {
  public:
@@ -99,6 +110,7 @@ class DriveGraph {
   std::size_t size() const { return keyframes_.size(); }
   const ScanRecord& record(std::size_t k) const { return records_[keyframes_[k].record]; }
   const Eigen::Isometry3d& pose(std::size_t k) const { return poses_[k]; }
+  bool is_located(std::size_t k) const { return record(k).located; }
 
   /// @return the marginals at the new poses
   /// @param least_gain  see PoseGraph::optimize
@@ -148,25 +160,27 @@ class DriveGraph {
     }
   }
 
-  /// All scans: those between keyframes ride along, corrected little by little; over a gap in the odometry with the one before.
+  /// All scans: those between keyframes ride along, corrected little by little; those lost before a gap in the odometry with the one after it.
   std::vector<EstimatedPose> all_poses(const std::vector<Matrix6d>& covariances, const std::vector<bool>& contradicted) const {
     std::vector<EstimatedPose> poses(records_.size());
     for (std::size_t k = 0; k < size(); ++k) {
       const std::size_t begin = keyframes_[k].record, end = k + 1 < size() ? keyframes_[k + 1].record : records_.size();
-      const std::size_t next = k + 1 < size() && !record(k + 1).odometry.began_anew ? k + 1 : k;
+      const std::size_t next = k + 1 < size() ? k + 1 : k;
+      const bool gap_follows = next != k && record(next).odometry.began_anew;
       const Eigen::Isometry3d T_map_odom = poses_[k] * T_odom(k).inverse(), T_map_odom_next = poses_[next] * T_odom(next).inverse();
       double num_lost = 0;
       for (std::size_t i = begin; i < end; ++i) {
         const OdometryStep& step = records_[i].odometry;
-        const double share = static_cast<double>(i - begin) / static_cast<double>(end - begin);
+        const std::size_t by = gap_follows && i != begin ? next : k;
+        const double share = gap_follows ? static_cast<double>(by != k) : static_cast<double>(i - begin) / static_cast<double>(end - begin);
         const Eigen::Isometry3d before = T_map_odom * step.T_odom_sensor, after = T_map_odom_next * step.T_odom_sensor;
         poses[i].T_map_sensor = retract(before, share * local_coordinates(before, after));
-        const Matrix6d A = adjoint(step.T_odom_sensor.inverse() * T_odom(k));
-        poses[i].covariance = A * covariances[k] * A.transpose();
+        const Matrix6d A = adjoint(step.T_odom_sensor.inverse() * T_odom(by));
+        poses[i].covariance = A * covariances[by] * A.transpose();
         poses[i].velocity = step.velocity;
-        poses[i].contradicted = contradicted[k];
+        poses[i].contradicted = contradicted[by];
         poses[i].calibrated = true;
-        num_lost = i == begin || step.joined ? 0 : num_lost + 1;
+        num_lost = i == begin || step.joined ? 0 : gap_follows ? static_cast<double>(end - i) : num_lost + 1;
         if (i != begin) poses[i].covariance += num_lost > 0 ? Matrix6d(num_lost * num_lost * carried_covariance()) : covariance_of(step.information);
       }
     }
@@ -201,6 +215,7 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
   return_freed_memory();   // of the online pass, that its threads keep
   const EstimateOptions& how = options.estimate;
   center_velocities(records);
+  locate_backwards(records);
   DriveGraph graph(records, how);
   LengthsByKind expected_outset_m{};
   if (prior && prior->points().identity().sees_roofs) expected_outset_m[PieceKind::wall] = how.roof_overhang_m;
@@ -216,7 +231,10 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
     std::vector<std::shared_ptr<const SurfelCloud>> ready(graph.size());
     ordered_pipeline(
         graph.size(), prior->threads(), 2 * static_cast<std::size_t>(prior->threads()), [&](std::size_t k) { ready[k] = scans.surfels_of(k, graph.record(k)); },
-        [&](std::size_t k) { take(k, graph.pose(k), comparison.at(*std::exchange(ready[k], {}), graph.pose(k))); });
+        [&](std::size_t k) {
+          const auto surfels = std::exchange(ready[k], {});
+          if (graph.is_located(k)) take(k, graph.pose(k), comparison.at(*surfels, graph.pose(k)));
+        });
     return comparison.stated_building_sigma_m();
   };
   if (prior) {
@@ -240,7 +258,9 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
   const std::vector<bool> held = pieces.held(graph.size());
   graph.add_common(pieces.common_variance(sigmas, {how.common_share, how.wall_common_share, how.ground_common_share}), held, marginals.poses);
   if (known_height_m && held.front()) graph.doubt_heights(*known_height_m, marginals.poses);
-  const std::vector<bool> contradicted = pieces.contradicted(graph.size());
+  std::vector<bool> contradicted = pieces.contradicted(graph.size());
+  for (std::size_t k = 0; k < graph.size(); ++k)
+    if (!graph.is_located(k)) contradicted[k] = true;
   if (std::ranges::all_of(contradicted, std::identity()))   // nowhere is the drive known to be
     for (Matrix6d& covariance : marginals.poses) covariance += unknown_gap_covariance();
   return graph.all_poses(marginals.poses, contradicted);

@@ -18,6 +18,7 @@ struct ScanRecord {
   double stamp_s;
   OdometryStep odometry;
   Eigen::Isometry3d T_map_online;
+  bool located = true;            ///< T_map_online is known; not so beyond a gap in the odometry until the drive is found again
 };
 
 /// The best poses of a whole drive: one sparse graph over keyframes and pieces of the prior, in a few passes: compare the keyframes with the prior at their

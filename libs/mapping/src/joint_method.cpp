@@ -66,7 +66,7 @@ class JointMethod : public MappingMethod {
     }
     mapped.T_map_online = tracker_.T_map_odom() * step.T_odom_sensor;
     mapped.verdict = lost ? Verdict::lost : verdict_by_prior();
-    records_.push_back({mapped.index, mapped.stamp_s, step, mapped.T_map_online});
+    records_.push_back({mapped.index, mapped.stamp_s, step, mapped.T_map_online, tracker_.is_located()});
   }
 
   SurfelCloud straightened(const Scan& scan, const Vector6d& velocity) {
@@ -101,7 +101,7 @@ class JointMethod : public MappingMethod {
 
   Verdict verdict_by_prior() const {
     if (!last_match_ || last_match_->share < outside_share) return Verdict::outside_prior;
-    if (!last_match_->figures.accepted) return Verdict::dead_reckoned;
+    if (!last_match_->figures.accepted || !tracker_.is_located()) return Verdict::dead_reckoned;
     return Verdict::anchored;
   }
 

@@ -58,9 +58,9 @@ Odometry::Odometry(const OdometryOptions& options, const Vector6d& first_velocit
 
 /// Stamps that stand still say nothing, and no motion stays steady for long.
 double Odometry::time_since_last(double stamp_s) const {
-  constexpr double usual_s = 0.1, longest_s = 1;
+  constexpr double usual_s = 0.1;
   const double duration_s = stamp_s - stamp_last_s_;
-  return duration_s > 0 ? std::min(duration_s, longest_s) : usual_s;
+  return duration_s > 0 ? std::min(duration_s, longest_steady_s) : usual_s;
 }
 
 OdometryStep Odometry::matched(const SurfelCloud& scan, const Eigen::Isometry3d& guess) {
@@ -156,8 +156,36 @@ std::optional<OdometryStep> Odometry::found_around(const SurfelCloud& scan, cons
   return fit(elsewhere.T_odom_sensor) > fit(found.T_odom_sensor) + clear_gain ? std::optional(elsewhere) : std::nullopt;
 }
 
-OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
+/// The stamps tell of a gap, and the street beyond it is another: straight on, for no turn lasts that long.
+OdometryStep Odometry::begun_anew(SurfelCloud scan, double stamp_s) {
+  constexpr double longest_s = 10;
+  Vector6d straight_on = velocity_;
+  straight_on.head<3>().setZero();
+  const Eigen::Isometry3d T = moved_on(T_odom_last_, straight_on, std::min(stamp_s - stamp_last_s_, longest_s));
+  *this = Odometry(options_, straight_on);
+  T_odom_last_ = T;
+  OdometryStep found = step(scan, stamp_s);
+  found.began_anew = true;
+  return found;
+}
+
+/// While lost. A gap in the recording, perhaps: the old street may never come back.
+OdometryStep Odometry::followed_apart(SurfelCloud scan, double stamp_s, const Eigen::Isometry3d& guess) {
   constexpr int give_up_after = 100;
+  if (!apart_) {
+    apart_ = std::make_unique<Odometry>(options_, velocity_);
+    apart_->T_odom_last_ = guess;
+  }
+  OdometryStep found = apart_->step(scan, stamp_s);
+  found.joined = false;
+  if (++num_lost_ < give_up_after) return found;
+  found.began_anew = true;
+  const auto begun = std::exchange(apart_, nullptr);
+  *this = std::move(*begun);
+  return found;
+}
+
+OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
   constexpr double fading = 0.9;   // a scan
   OdometryStep found;
   found.T_odom_sensor = T_odom_last_;
@@ -165,31 +193,23 @@ OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
     undo_motion(scan, velocity_);
   } else {
     const double duration_s = time_since_last(stamp_s);
+    const SurfelCloud raw = scan;
     found = matched_in_motion(scan, duration_s);
     const auto beyond_gap = found_beyond_gap(scan, found, duration_s);
     if (beyond_gap) found = *beyond_gap;
     const Eigen::Isometry3d guess = found.T_odom_sensor;
     if (!found.joined && num_lost_ > 0) found = found_again(scan);
-    if (!found.joined) {
-      found.velocity = velocity_;
-      found.T_odom_sensor = guess;
-      if (++num_lost_ < give_up_after) return found;
-      found.began_anew = true;   // a gap in the recording, perhaps: the old street does not come back
-      local_map_ = SurfelMap(options_.local_map);
-      fits_ = {};
-    } else {
-      fits_.take(found.figures);
-    }
-    if (found.began_anew) {
-      velocity_.setZero();
-      rocking_rad_ = unknown_rocking_rad;
-    } else if (beyond_gap) {
+    if (!beyond_gap && num_lost_ == 0 && stamp_s - stamp_last_s_ > longest_steady_s && fits_.doubts(found.figures)) return begun_anew(raw, stamp_s);
+    if (!found.joined) return followed_apart(raw, stamp_s, guess);
+    fits_.take(found.figures);
+    if (beyond_gap) {
       velocity_.head<3>().setZero();   // how it turns now is not known
     } else if (num_lost_ == 0) {
       velocity_ = steady_velocity(T_odom_last_, found.T_odom_sensor, duration_s);
       rocking_rad_ = std::max(turn_between(T_odom_last_, found.T_odom_sensor).head<2>().norm(), fading * rocking_rad_);
     }
     num_lost_ = 0;
+    apart_.reset();
     T_odom_last_ = found.T_odom_sensor;
   }
   found.velocity = velocity_;
@@ -197,6 +217,15 @@ OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
   local_map_.insert(scan, found.T_odom_sensor);
   local_map_.remove_beyond(found.T_odom_sensor.translation(), options_.local_map_radius_m);
   return found;
+}
+
+void Odometry::exchange(StateArchive& archive) {
+  archive(local_map_, T_odom_last_, stamp_last_s_, velocity_, rocking_rad_, fits_, num_lost_);
+  bool is_lost = apart_ != nullptr;
+  archive(is_lost);
+  if (!is_lost) return apart_.reset();
+  if (archive.reading()) apart_ = std::make_unique<Odometry>(options_, velocity_);
+  apart_->exchange(archive);
 }
 
 }  // namespace priormap

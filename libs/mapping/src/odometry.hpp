@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <memory>
 #include <optional>
 
 #include <priormap/core/se3.hpp>
@@ -14,7 +15,7 @@ namespace priormap {
 struct OdometryStep {
   Eigen::Isometry3d T_odom_sensor = Eigen::Isometry3d::Identity();
   bool joined = false;                       ///< matched; otherwise lost (for the first scan there is nothing to match)
-  bool began_anew = false;                   ///< nothing was found for so long that the local map begins again here: how far off is not known
+  bool began_anew = false;                   ///< nothing was found for so long that the local map since the first scan that was lost counts from here on: how far off it is is not known
   Matrix6d information = Matrix6d::Zero();   ///< of the match, tangent in sensor axes
   Vector6d velocity = Vector6d::Zero();      ///< rad/s, m/s in sensor axes, by which the motion within the sweep was undone
   MatchFigures figures;
@@ -45,7 +46,7 @@ class Odometry {
   Odometry(const OdometryOptions& options, const Vector6d& first_velocity);
   /// @param scan  as the moving sensor saw it; on return as it would have been seen from where the sensor was at the stamp
   OdometryStep step(SurfelCloud& scan, double stamp_s);
-  void exchange(StateArchive& archive) { archive(local_map_, T_odom_last_, stamp_last_s_, velocity_, rocking_rad_, fits_, num_lost_); }
+  void exchange(StateArchive& archive);
 
  private:
   double time_since_last(double stamp_s) const;
@@ -53,11 +54,13 @@ class Odometry {
   OdometryStep matched_after(const SurfelCloud& scan, double duration_s);
   OdometryStep matched_in_motion(SurfelCloud& scan, double duration_s);
   OdometryStep found_again(const SurfelCloud& scan);
+  OdometryStep begun_anew(SurfelCloud scan, double stamp_s);
+  OdometryStep followed_apart(SurfelCloud scan, double stamp_s, const Eigen::Isometry3d& guess);
   std::optional<OdometryStep> found_beyond_gap(const SurfelCloud& scan, const OdometryStep& found, double duration_s);
   std::optional<OdometryStep> found_straight_on(const SurfelCloud& scan);
   std::optional<OdometryStep> found_around(const SurfelCloud& scan, const OdometryStep& found);
 
-  static constexpr double unknown_rocking_rad = 0.07;
+  static constexpr double unknown_rocking_rad = 0.07, longest_steady_s = 1;
   OdometryOptions options_;
   JointRegistration registration_;
   SurfelMap local_map_;
@@ -67,6 +70,7 @@ class Odometry {
   double rocking_rad_ = unknown_rocking_rad;   // most that roll and pitch change from scan to scan, of late
   UsualFit fits_;
   int num_lost_ = 0;
+  std::unique_ptr<Odometry> apart_;   // while lost: of the scans since then, in the same frame, as if the first of them were where it was guessed
 };
 
 }  // namespace priormap

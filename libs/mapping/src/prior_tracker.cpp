@@ -29,7 +29,7 @@ SurfelCloud without_roofs(const SurfelCloud& scan, const Eigen::Matrix3d& R_map_
 }  // namespace
 
 PriorTracker::PriorTracker(const TrackingOptions& options, double scan_voxel_m, const std::optional<NearTiles>& prior, const Eigen::Isometry3d& T_map_first)
-    : options_(options), scan_voxel_m_(scan_voxel_m), registration_(options.registration), T_map_odom_(T_map_first) {
+    : options_(options), scan_voxel_m_(scan_voxel_m), registration_(options.registration), T_map_odom_(T_map_first), search_(options.search) {
   if (prior) prior_.emplace(*prior, PriorSurfels(options.prior));
 }
 
@@ -48,7 +48,7 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
     const Eigen::Isometry3d T_start = T_map_odom_ * T_odom_sensor;
     const Eigen::Isometry3d T_given = registration_.align(scan, targets, T_start, PosePrior{T_start, start_information(T_start)}).T_map_scan;
     hypotheses_.push_back({T_given * T_odom_sensor.inverse(), 0});
-    for (const ScoredResult& other : registration_.search(scan, targets, T_given, options_.search))
+    for (const ScoredResult& other : registration_.search(scan, targets, T_given, search_))
       hypotheses_.push_back({other.match.T_map_scan * T_odom_sensor.inverse(), 0});
   }
   const Matrix6d information = (Vector6d() << Eigen::Vector3d::Constant(1e4), Eigen::Vector3d::Constant(10)).finished().asDiagonal();
@@ -62,20 +62,25 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
   const Hypothesis& given = hypotheses_.front();
   const Hypothesis& best = *std::max_element(hypotheses_.begin(), hypotheses_.end(), [](const Hypothesis& a, const Hypothesis& b) { return a.score < b.score; });
   T_map_odom_ = (best.score - given.score > clear_gain * static_cast<double>(num_surfels_heard_) ? best : given).T_map_odom;
-  if (++num_heard_ == options_.start_keyframes) hypotheses_.clear();
+  located_ = located_ || best.score > clear_gain * static_cast<double>(num_surfels_heard_);
+  if (++num_heard_ < options_.start_keyframes) return;
+  hypotheses_.clear();
+  if (!located_) begin_anew();
 }
 
 void PriorTracker::begin_anew() {
   T_odom_last_.reset();
   prior_weights_ = PriorSurfels::unweighted;
   hypotheses_.clear();
+  search_ = {.radius_m = 40, .yaw_rad = 1.2, .step_m = 2, .step_rad = 0.1, .sigma_m = 0.5, .surfels = 150, .refined = 30};
+  located_ = false;
   num_heard_ = 0;
   num_surfels_heard_ = 0;
 }
 
 void PriorTracker::exchange(StateArchive& archive) {
   if (prior_) archive(*prior_);
-  archive(T_map_odom_, T_odom_last_, covariance_, prior_weights_, hypotheses_, num_heard_, num_surfels_heard_);
+  archive(T_map_odom_, T_odom_last_, covariance_, prior_weights_, hypotheses_, search_, located_, num_heard_, num_surfels_heard_);
 }
 
 bool PriorTracker::asks(const Eigen::Isometry3d& T_odom_sensor) const {

@@ -29,8 +29,10 @@ class PriorTracker {
   bool asks(const Eigen::Isometry3d& T_odom_sensor) const;
   /// The prior's word is asked each `keyframe_m`. @return what it was
   std::optional<PriorMatch> follow(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor);
-  /// The odometry has a gap: the next scan is looked for around its pose as the first one was.
+  /// The odometry has a gap: the next scans are looked for far around their poses, until they fit clearly.
   void begin_anew();
+  /// Whether the drive has been found, since the odometry began anew. At first it is where the user says.
+  bool is_located() const { return located_; }
   Eigen::Isometry3d T_map_odom() const { return T_map_odom_; }
   void exchange(StateArchive& archive);
 
@@ -53,6 +55,8 @@ class PriorTracker {
   Matrix6d covariance_ = Matrix6d::Zero();         // of T_map_odom * T_odom_last, tangent in sensor axes
   PriorSurfels::Weights prior_weights_ = PriorSurfels::unweighted;
   std::vector<Hypothesis> hypotheses_;             // where the drive may have begun; the first is the one given
+  PoseSearchOptions search_;                       // how far from there
+  bool located_ = true;
   int num_heard_ = 0;
   std::size_t num_surfels_heard_ = 0;
 };
