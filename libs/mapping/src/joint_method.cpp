@@ -45,9 +45,7 @@ class JointMethod : public MappingMethod {
         [&](std::size_t i) { placed(join(stretches[i], *std::exchange(driven[i], std::nullopt), wanted.source)); });
   }
 
-  std::vector<EstimatedPose> finish(const ReadScan& read_again) override {
-    return estimate_drive(records_, prior_, read_again, options_, known_height_m_);
-  }
+  std::vector<EstimatedPose> finish(const ReadScan& read_again) override { return estimate_drive(records_, prior_, read_again, options_, known_height_m_); }
 
   void exchange(StateArchive& archive) override { archive(odometry_, T_odom_own_, tracker_, last_match_, records_); }
 

@@ -178,7 +178,7 @@ OdometryStep Odometry::followed_apart(SurfelCloud scan, double stamp_s, const Ei
   }
   OdometryStep found = apart_->step(scan, stamp_s);
   found.joined = false;
-  if (++num_lost_ < give_up_after) return found;
+  if (++num_lost_ < give_up_after && !found.began_anew) return found;   // a gap told by the stamps while lost is one as well
   found.began_anew = true;
   const auto begun = std::exchange(apart_, nullptr);
   *this = std::move(*begun);

@@ -73,7 +73,7 @@ void PriorTracker::begin_anew() {
   prior_weights_ = PriorSurfels::unweighted;
   hypotheses_.clear();
   search_ = {.radius_m = 40, .yaw_rad = 1.2, .step_m = 2, .step_rad = 0.1, .sigma_m = 0.5, .surfels = 150, .refined = 30};
-  located_ = false;
+  located_ = !prior_;   // without a prior there is nothing to be found in
   num_heard_ = 0;
   num_surfels_heard_ = 0;
 }
