@@ -144,6 +144,9 @@ std::optional<OdometryStep> Odometry::found_straight_on(const SurfelCloud& scan)
 /// Around what lies ahead, also round a corner: starts so near each other that registering some of the surfels leads from one of them to the right place, where all fit far better.
 std::optional<OdometryStep> Odometry::found_around(const SurfelCloud& scan, const OdometryStep& found) {
   constexpr double radius_m = 20, behind_m = 4, clear_gain = 0.05;   // a surfel
+  constexpr int search_each = 10;   // doubted scan, while nothing is found
+  if (num_to_search_ > 0 && --num_to_search_ > 0) return std::nullopt;
+  num_to_search_ = search_each;
   constexpr std::size_t surfels = 150;
   const SurfelCloud some = every(scan, scan.size() / surfels);
   const PoseSearchOptions starts{.radius_m = radius_m, .yaw_rad = 1.2, .step_m = 3, .step_rad = 0.1, .surfels = surfels, .refined = std::numeric_limits<int>::max()};
@@ -153,7 +156,9 @@ std::optional<OdometryStep> Odometry::found_around(const SurfelCloud& scan, cons
   const OdometryStep elsewhere = matched(scan, registration_.search(some, targets, centre, starts).front().match.T_map_scan);
   if (!elsewhere.joined || !fits_.may_be(elsewhere.figures)) return std::nullopt;
   const auto fit = [&](const Eigen::Isometry3d& T) { return registration_.score(scan, targets, T, 0) / static_cast<double>(scan.size()); };
-  return fit(elsewhere.T_odom_sensor) > fit(found.T_odom_sensor) + clear_gain ? std::optional(elsewhere) : std::nullopt;
+  if (fit(elsewhere.T_odom_sensor) < fit(found.T_odom_sensor) + clear_gain) return std::nullopt;
+  num_to_search_ = 0;
+  return elsewhere;
 }
 
 /// The stamps tell of a gap, and the street beyond it is another: straight on, for no turn lasts that long.
@@ -177,6 +182,7 @@ OdometryStep Odometry::followed_apart(SurfelCloud scan, double stamp_s, const Ei
     apart_->T_odom_last_ = guess;
   }
   OdometryStep found = apart_->step(scan, stamp_s);
+  if (apart_->apart_) apart_ = std::move(apart_->apart_);   // lost there as well: what came since then counts
   found.joined = false;
   if (++num_lost_ < give_up_after && !found.began_anew) return found;   // a gap told by the stamps while lost is one as well
   found.began_anew = true;
@@ -189,30 +195,37 @@ OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
   constexpr double fading = 0.9;   // a scan
   OdometryStep found;
   found.T_odom_sensor = T_odom_last_;
+  found.velocity = velocity_;
   if (local_map_.empty()) {
     undo_motion(scan, velocity_);
   } else {
     const double duration_s = time_since_last(stamp_s);
     const SurfelCloud raw = scan;
     found = matched_in_motion(scan, duration_s);
-    const auto beyond_gap = found_beyond_gap(scan, found, duration_s);
-    if (beyond_gap) found = *beyond_gap;
+    SurfelCloud as_before = raw;   // straightened by the motion so far: a false match shows a false one
+    undo_motion(as_before, velocity_);
+    const auto beyond_gap = found_beyond_gap(as_before, found, duration_s);
+    if (beyond_gap) {
+      found = *beyond_gap;
+      scan = std::move(as_before);
+    }
     const Eigen::Isometry3d guess = found.T_odom_sensor;
     if (!found.joined && num_lost_ > 0) found = found_again(scan);
-    if (!beyond_gap && num_lost_ == 0 && stamp_s - stamp_last_s_ > longest_steady_s && fits_.doubts(found.figures)) return begun_anew(raw, stamp_s);
+    const bool gap_is_told = stamp_s - stamp_last_s_ > std::max(longest_steady_s, 3 * usual_period_s_);
+    if (!beyond_gap && num_lost_ == 0 && gap_is_told && (!found.joined || fits_.doubts(found.figures))) return begun_anew(raw, stamp_s);
     if (!found.joined) return followed_apart(raw, stamp_s, guess);
     fits_.take(found.figures);
-    if (beyond_gap) {
-      velocity_.head<3>().setZero();   // how it turns now is not known
-    } else if (num_lost_ == 0) {
+    if (!beyond_gap && num_lost_ == 0) {
+      usual_period_s_ = stamp_s - stamp_last_s_;
       velocity_ = steady_velocity(T_odom_last_, found.T_odom_sensor, duration_s);
       rocking_rad_ = std::max(turn_between(T_odom_last_, found.T_odom_sensor).head<2>().norm(), fading * rocking_rad_);
     }
     num_lost_ = 0;
     apart_.reset();
     T_odom_last_ = found.T_odom_sensor;
+    found.velocity = velocity_;
+    if (beyond_gap) velocity_.head<3>().setZero();   // how it turns now is not known
   }
-  found.velocity = velocity_;
   stamp_last_s_ = stamp_s;
   local_map_.insert(scan, found.T_odom_sensor);
   local_map_.remove_beyond(found.T_odom_sensor.translation(), options_.local_map_radius_m);
@@ -220,7 +233,7 @@ OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
 }
 
 void Odometry::exchange(StateArchive& archive) {
-  archive(local_map_, T_odom_last_, stamp_last_s_, velocity_, rocking_rad_, fits_, num_lost_);
+  archive(local_map_, T_odom_last_, stamp_last_s_, velocity_, rocking_rad_, usual_period_s_, fits_, num_lost_, num_to_search_);
   bool is_lost = apart_ != nullptr;
   archive(is_lost);
   if (!is_lost) return apart_.reset();

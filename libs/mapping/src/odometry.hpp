@@ -68,8 +68,10 @@ class Odometry {
   double stamp_last_s_ = 0;
   Vector6d velocity_;               // and there
   double rocking_rad_ = unknown_rocking_rad;   // most that roll and pitch change from scan to scan, of late
+  double usual_period_s_ = 0;   // of the scan before
   UsualFit fits_;
   int num_lost_ = 0;
+  int num_to_search_ = 0;   // doubted scans until the next search
   std::unique_ptr<Odometry> apart_;   // while lost: of the scans since then, in the same frame, as if the first of them were where it was guessed
 };
 

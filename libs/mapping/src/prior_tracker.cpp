@@ -61,9 +61,12 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
   num_surfels_heard_ += scan.size();
   const Hypothesis& given = hypotheses_.front();
   const Hypothesis& best = *std::max_element(hypotheses_.begin(), hypotheses_.end(), [](const Hypothesis& a, const Hypothesis& b) { return a.score < b.score; });
-  T_map_odom_ = (best.score - given.score > clear_gain * static_cast<double>(num_surfels_heard_) ? best : given).T_map_odom;
-  located_ = located_ || best.score > clear_gain * static_cast<double>(num_surfels_heard_);
-  if (++num_heard_ < options_.start_keyframes) return;
+  const double clear = clear_gain * static_cast<double>(num_surfels_heard_);
+  const Hypothesis& chosen = best.score - given.score > clear ? best : given;
+  T_map_odom_ = chosen.T_map_odom;
+  const int enough = std::min(4, options_.start_keyframes);
+  if (++num_heard_ >= enough) located_ = located_ || chosen.score > clear;
+  if (num_heard_ < options_.start_keyframes) return;
   hypotheses_.clear();
   if (!located_) begin_anew();
 }
@@ -73,7 +76,7 @@ void PriorTracker::begin_anew() {
   prior_weights_ = PriorSurfels::unweighted;
   hypotheses_.clear();
   search_ = {.radius_m = 40, .yaw_rad = 1.2, .step_m = 2, .step_rad = 0.1, .sigma_m = 0.5, .surfels = 150, .refined = 30};
-  located_ = !prior_;   // without a prior there is nothing to be found in
+  located_ = !prior_ || options_.start_keyframes == 0;   // nothing to be found in; or no looking
   num_heard_ = 0;
   num_surfels_heard_ = 0;
 }
