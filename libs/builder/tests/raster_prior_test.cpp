@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cfloat>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -249,13 +250,52 @@ TEST_F(RasterPriorTest, voids_that_the_file_does_not_declare_are_left_out_and_to
     EXPECT_EQ(points.size(), num_points);
     for (std::size_t i = 0; i < points.size(); ++i) ASSERT_EQ(points.position(i).z(), 500);
     ASSERT_EQ(warnings_.size(), 2u) << "and that heights are undeclared";
-    EXPECT_NE(warnings_[1].find("dem.tif: 15000 of 60000 cells hold -9999, which is no height on Earth; they are left out"), std::string::npos) << warnings_[1];
+    EXPECT_NE(warnings_[1].find("dem.tif: 15000 of the cells read hold -9999, which is no height on Earth; they are left out"), std::string::npos) << warnings_[1];
     EXPECT_NE(warnings_[1].find("gdal_translate -a_nodata -9999"), std::string::npos) << warnings_[1];
   };
   expect_left_out("cells", {}, 45000);
   PriorOptions lattice;
   lattice.spacing_m = 1;
   expect_left_out("lattice", lattice, 45000);
+}
+
+TEST_F(RasterPriorTest, voids_are_named_by_digits_that_read_back_as_the_same_value) {
+  const auto advice = [&](double value, GDALDataType type, const std::string& name) {
+    RasterFixture voids = hills(20, 20);
+    voids.type = type;
+    voids.value = [=](double col, double) { return col < 5 ? value : 500; };
+    const fs::path file = write(voids, name + ".tif");
+    warnings_.clear();
+    build({file}, {}, name);
+    const std::string text = warnings_.back(), before = "gdal_translate -a_nodata ";
+    const std::size_t start = text.find(before) + before.size();
+    const std::string digits = text.substr(start, text.find(' ', start) - start);
+
+    auto* raster = GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE);
+    raster->GetRasterBand(1)->SetNoDataValue(std::stod(digits));
+    GDALClose(raster);
+    warnings_.clear();
+    EXPECT_EQ(points_of(build({file}, {}, name + "-declared")).size(), 300u);
+    EXPECT_EQ(warnings_.size(), 1u) << "that heights are undeclared";
+    return digits;
+  };
+  EXPECT_EQ(std::stof(advice(-FLT_MAX, GDT_Float32, "lowest_float")), -FLT_MAX);
+  EXPECT_EQ(std::stod(advice(-FLT_MAX, GDT_Float64, "lowest_float_as_double")), -FLT_MAX);
+  EXPECT_EQ(std::stod(advice(-DBL_MAX, GDT_Float64, "lowest_double")), -DBL_MAX);
+  EXPECT_EQ(advice(-9999999, GDT_Float32, "seven_nines"), "-9999999");
+  EXPECT_EQ(advice(-9999999, GDT_Int32, "seven_nines_of_an_integer"), "-9999999");
+  EXPECT_EQ(advice(-9999.9, GDT_Float32, "with_a_fraction"), "-9999.9");
+  EXPECT_EQ(advice(-2147483648.0, GDT_Int32, "lowest_integer"), "-2147483648");
+}
+
+TEST_F(RasterPriorTest, voids_in_a_box_are_told_of_without_a_look_at_what_lies_outside) {
+  const fs::path file = write_mosaic_with_a_lost_east(folder_, [](double col, double row) { return col >= 20 && col < 30 && row < 50 ? -9999 : 500; });
+  PriorOptions options;
+  options.bbox = {500010, 4999900, 500090, 5000000};
+  options.bbox_crs = "EPSG:32632";
+  EXPECT_EQ(points_of(build({file}, options, "prior")).size(), 80u * 100 - 10 * 50);
+  ASSERT_EQ(warnings_.size(), 2u) << "and that heights are undeclared";
+  EXPECT_NE(warnings_[1].find("mosaic.vrt: 500 of the cells read hold -9999"), std::string::npos) << warnings_[1];
 }
 
 TEST_F(RasterPriorTest, heights_in_another_unit_are_an_error_that_says_so) {
@@ -265,7 +305,7 @@ TEST_F(RasterPriorTest, heights_in_another_unit_are_an_error_that_says_so) {
     build({write(millimetres, "dem.tif")}, {}, "prior");
     FAIL();
   } catch (const FormatError& error) {
-    EXPECT_NE(std::string(error.what()).find("400 of 400 cells hold values from 500000 to 500019"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("400 of the cells read hold values from 500000 to 500019"), std::string::npos) << error.what();
   }
 }
 

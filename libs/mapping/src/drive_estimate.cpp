@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <memory>
 #include <utility>
 
 #include <priormap/core/parallel.hpp>
 #include <priormap/core/process.hpp>
+#include <priormap/core/reused.hpp>
 
 #include "confidence.hpp"
 #include "prior_pieces.hpp"
@@ -67,36 +67,47 @@ void locate_backwards(std::vector<ScanRecord>& records) {
 /// Compares scans with the prior where they are thought to have been taken.
 class PriorComparison {
  public:
-  PriorComparison(const NearTiles& prior, const PiecesOfPrior& pieces, const JointMethodOptions& options)
-      : prior_(prior, PriorSurfels(options.tracking.prior), [&pieces](PatchCloud& patches) { pieces.move_buildings(patches); }), registration_(one_step(options.tracking.registration)) {}
+  /// Scans from places this far apart are compared with what is loaded once.
+  static constexpr double together_m = 40;
 
+  PriorComparison(const NearTiles& prior, const PiecesOfPrior& pieces, const JointMethodOptions& options)
+      : window_(NearTiles(prior.points(), prior.frame(), options.estimate.range_m + together_m + margin_m, prior.threads()), PriorSurfels(options.tracking.prior),
+                [&pieces](PatchCloud& patches) { pieces.move_buildings(patches); }),
+        registrations_([how = one_step(options.tracking.registration)] { return JointRegistration(how); }) {}
+
+  void move_to(const Eigen::Vector3d& p_map) { window_.around(p_map); }
+
+  /// Of a scan within `together_m` of there; by several threads at once.
   std::vector<PlaneMatch> at(const SurfelCloud& surfels, const Eigen::Isometry3d& T_map_sensor) {
-    const auto targets = prior_.around(T_map_sensor.translation()).targets(0.0, PriorSurfels::unweighted);
-    registration_.align(surfels, targets, T_map_sensor);
-    std::vector<PlaneMatch> matches;
-    for (std::size_t t = 0; t < targets.size(); ++t) {
-      const std::vector<PlaneMatch> layer = registration_.plane_matches(t);
-      matches.insert(matches.end(), layer.begin(), layer.end());
-    }
-    return matches;
+    return registrations_.with_one([&](JointRegistration& registration) {
+      const auto targets = window_.map().targets(0.0, PriorSurfels::unweighted);
+      registration.align(surfels, targets, T_map_sensor);
+      std::vector<PlaneMatch> matches;
+      for (std::size_t t = 0; t < targets.size(); ++t) {
+        const std::vector<PlaneMatch> layer = registration.plane_matches(t);
+        matches.insert(matches.end(), layer.begin(), layer.end());
+      }
+      return matches;
+    });
   }
 
-  double stated_building_sigma_m() const { return prior_.map().stated_sigma_m(PriorSurfels::of_features); }
+  double stated_building_sigma_m() const { return window_.map().stated_sigma_m(PriorSurfels::of_features); }
 
  private:
+  static constexpr double margin_m = 5;   // planes are known beyond what is compared
   static JointOptions one_step(JointOptions options) {
     options.max_iterations = 1;
     return options;
   }
-  PriorWindow<PriorSurfels> prior_;
-  JointRegistration registration_;
+  PriorWindow<PriorSurfels> window_;
+  Reused<JointRegistration> registrations_;
 };
 
 /// In the middle of a sweep, what came after tells as much of the motion as what came before.
 void center_velocities(std::vector<ScanRecord>& records) {
   for (std::size_t i = 1; i + 1 < records.size(); ++i) {
     OdometryStep &now = records[i].odometry, &next = records[i + 1].odometry;
-    if (now.joined && next.joined) now.velocity = 0.5 * (now.velocity + next.velocity);
+    if (now.joined && next.joined) Odometry::amend(now, 0.5 * (now.velocity + next.velocity));
   }
 }
 
@@ -111,6 +122,17 @@ class DriveGraph {
   const ScanRecord& record(std::size_t k) const { return records_[keyframes_[k].record]; }
   const Eigen::Isometry3d& pose(std::size_t k) const { return poses_[k]; }
   bool is_located(std::size_t k) const { return record(k).located; }
+
+  /// The poses that are located, in order, in groups that lie within `distance_m` of their first one.
+  std::vector<std::vector<std::size_t>> located_within(double distance_m) const {
+    std::vector<std::vector<std::size_t>> groups;
+    for (std::size_t k = 0; k < size(); ++k) {
+      if (!is_located(k)) continue;
+      if (groups.empty() || (poses_[k].translation() - poses_[groups.back().front()].translation()).norm() > distance_m) groups.emplace_back();
+      groups.back().push_back(k);
+    }
+    return groups;
+  }
 
   /// @return the marginals at the new poses
   /// @param least_gain  see PoseGraph::optimize
@@ -160,27 +182,30 @@ class DriveGraph {
     }
   }
 
-  /// All scans: those between keyframes ride along, corrected little by little; those lost before a gap in the odometry with the one after it.
+  /// All scans: those between keyframes ride along, corrected little by little; those followed apart before the odometry began anew with the keyframe where it did.
   std::vector<EstimatedPose> all_poses(const std::vector<Matrix6d>& covariances, const std::vector<bool>& contradicted) const {
     std::vector<EstimatedPose> poses(records_.size());
     for (std::size_t k = 0; k < size(); ++k) {
       const std::size_t begin = keyframes_[k].record, end = k + 1 < size() ? keyframes_[k + 1].record : records_.size();
-      const std::size_t next = k + 1 < size() ? k + 1 : k;
-      const bool gap_follows = next != k && record(next).odometry.began_anew;
+      const bool gap_follows = k + 1 < size() && record(k + 1).odometry.began_anew;
+      const std::size_t next = k + 1 < size() && !gap_follows ? k + 1 : k;
+      const std::size_t of_next_map = gap_follows ? end - static_cast<std::size_t>(record(k + 1).odometry.num_followed) : end;
       const Eigen::Isometry3d T_map_odom = poses_[k] * T_odom(k).inverse(), T_map_odom_next = poses_[next] * T_odom(next).inverse();
       double num_lost = 0;
       for (std::size_t i = begin; i < end; ++i) {
         const OdometryStep& step = records_[i].odometry;
-        const std::size_t by = gap_follows && i != begin ? next : k;
-        const double share = gap_follows ? static_cast<double>(by != k) : static_cast<double>(i - begin) / static_cast<double>(end - begin);
+        const bool followed = i >= of_next_map;
+        const std::size_t by = followed ? k + 1 : k;
         const Eigen::Isometry3d before = T_map_odom * step.T_odom_sensor, after = T_map_odom_next * step.T_odom_sensor;
-        poses[i].T_map_sensor = retract(before, share * local_coordinates(before, after));
+        const double share = static_cast<double>(i - begin) / static_cast<double>(end - begin);
+        poses[i].T_map_sensor = followed ? poses_[by] * (T_odom(by).inverse() * step.T_odom_sensor) : retract(before, share * local_coordinates(before, after));
         const Matrix6d A = adjoint(step.T_odom_sensor.inverse() * T_odom(by));
         poses[i].covariance = A * covariances[by] * A.transpose();
         poses[i].velocity = step.velocity;
         poses[i].contradicted = contradicted[by];
         poses[i].calibrated = true;
-        num_lost = i == begin || step.joined ? 0 : gap_follows ? static_cast<double>(end - i) : num_lost + 1;
+        const bool matched = step.joined || (followed && step.figures.accepted);
+        num_lost = i == begin || matched ? 0 : followed ? 1 : num_lost + 1;
         if (i != begin) poses[i].covariance += num_lost > 0 ? Matrix6d(num_lost * num_lost * carried_covariance()) : covariance_of(step.information);
       }
     }
@@ -228,13 +253,14 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
   ScansAgain scans(read_again, options.reduce_m, graph.size(), room_bytes);
   const auto compare = [&](auto&& take) {
     PriorComparison comparison(*prior, pieces, options);
-    std::vector<std::shared_ptr<const SurfelCloud>> ready(graph.size());
-    ordered_pipeline(
-        graph.size(), prior->threads(), 2 * static_cast<std::size_t>(prior->threads()), [&](std::size_t k) { ready[k] = scans.surfels_of(k, graph.record(k)); },
-        [&](std::size_t k) {
-          const auto surfels = std::exchange(ready[k], {});
-          if (graph.is_located(k)) take(k, graph.pose(k), comparison.at(*surfels, graph.pose(k)));
-        });
+    for (const std::vector<std::size_t>& near : graph.located_within(PriorComparison::together_m)) {
+      comparison.move_to(graph.pose(near.front()).translation());
+      std::vector<std::vector<PlaneMatch>> matches(near.size());
+      ordered_pipeline(
+          near.size(), prior->threads(), 2 * static_cast<std::size_t>(prior->threads()),
+          [&](std::size_t i) { matches[i] = comparison.at(*scans.surfels_of(near[i], graph.record(near[i])), graph.pose(near[i])); },
+          [&](std::size_t i) { take(near[i], graph.pose(near[i]), std::exchange(matches[i], {})); });
+    }
     return comparison.stated_building_sigma_m();
   };
   if (prior) {

@@ -147,7 +147,7 @@ void PiecesOfPrior::move_buildings(PatchCloud& patches) const {
 void PiecesOfPrior::clear_matches() {
   for (Piece& piece : pieces_) {
     piece.times_seen = 0;
-    piece.information_per_m2 = 0;
+    piece.surfels_heard = 0;
     piece.sum_of_normals.setZero();
     piece.num_normals = 0;
   }
@@ -174,16 +174,17 @@ void PiecesOfPrior::add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const s
     Piece& piece = pieces_[id];
     const PieceEquations equations = equations_of(of_piece, T_map_sensor, piece.offset_m, noise, piece.kind == PieceKind::ground);
     ++piece.times_seen;
-    piece.information_per_m2 += equations.H.bottomRightCorner<3, 3>().trace();
+    piece.surfels_heard += equations.H.bottomRightCorner<3, 3>().trace() * noise.surface_sigma_m * noise.surface_sigma_m;
     factors_.push_back({k, id, T_map_sensor, equations});
   }
 }
 
 /// Near leaves and hedges some step of a surface model always lies, wherever the drive is thought to be; a scan matches a surfel or two of them. Of a wall it sees more.
 double PiecesOfPrior::trust(const Piece& piece) {
-  constexpr double of_three_surfels = 300;   // 1/m^2
+  constexpr double enough_surfels = 3;   // in a scan
+  if (piece.times_seen == 0) return 0;
   if (piece.kind != PieceKind::wall && piece.kind != PieceKind::slope) return 1;
-  const double ratio = piece.information_per_m2 / (of_three_surfels * static_cast<double>(piece.times_seen));
+  const double ratio = piece.surfels_heard / (enough_surfels * static_cast<double>(piece.times_seen));
   return 1 - 1 / (1 + std::pow(ratio, 4));
 }
 
@@ -210,8 +211,8 @@ void PiecesOfPrior::take_outset(PieceKind kind) {
   double outward_m = expected_counts * (outset_m_[kind] - expected_outset_m_[kind]), count = expected_counts;
   for (const Piece& piece : pieces_) {
     if (piece.kind != kind) continue;
-    outward_m += piece.outward().dot(piece.offset_m);
-    count += piece.outward().squaredNorm();
+    outward_m += trust(piece) * piece.outward().dot(piece.offset_m);
+    count += trust(piece) * piece.outward().squaredNorm();
   }
   const double outset_m = -outward_m / count;   // offsets lead back to the real walls
   for (Piece& piece : pieces_)
@@ -260,14 +261,16 @@ std::vector<bool> PiecesOfPrior::contradicted(std::size_t num_poses) const {
 }
 
 std::vector<bool> PiecesOfPrior::held(std::size_t num_poses) const {
+  constexpr double enough = 0.5;
   std::vector<bool> result(num_poses);
-  for (const PieceFactor& factor : factors_) result[factor.pose] = true;
+  for (const PieceFactor& factor : factors_)
+    if (trust(pieces_[factor.piece]) > enough) result[factor.pose] = true;
   return result;
 }
 
 CommonVariance PiecesOfPrior::common_variance(const PieceSigmas& sigmas, const PieceShares& shares) const {
   std::array<double, piece_kinds.size()> count{};
-  for (const Piece& piece : pieces_) count[static_cast<std::size_t>(piece.kind)] += piece.times_seen > 0;
+  for (const Piece& piece : pieces_) count[static_cast<std::size_t>(piece.kind)] += trust(piece);
   // Told by sources that err each in its own way; each piece tells as much as its kind is sure.
   const auto common_to = [&](std::initializer_list<PieceKind> kinds, double share) {
     double information = 0, number = 0;

@@ -76,7 +76,7 @@ class PiecesOfPrior {
   void add(PoseId k, const Eigen::Isometry3d& T_map_sensor, const std::vector<PlaneMatch>& matches, const PieceNoise& noise);
   void add_to(PoseGraph& graph, const PieceSigmas& sigmas) const;
   void take_offsets(const PoseGraph& graph);
-  /// What the offsets say about the sigmas of each kind. @param stated  beforehand, counted as ten pieces' worth; @param used  in the graph that gave offsets and covariances
+  /// What the offsets say about the sigmas of each kind. @param stated  beforehand, counted as three pieces' worth; @param used  in the graph that gave offsets and covariances
   PieceSigmas estimated_sigmas(const PieceSigmas& stated, const PieceSigmas& used, const std::vector<Eigen::Matrix3d>& covariances,
                                const std::vector<double>& weights) const;
   /// How sure the prior is of a place: the errors of its pieces have a share of their variance in common, which no number of pieces averages out. Buildings and what belongs to none
@@ -94,7 +94,7 @@ class PiecesOfPrior {
     PieceKind kind;
     Eigen::Vector3d offset_m = Eigen::Vector3d::Zero();
     std::size_t times_seen = 0;
-    double information_per_m2 = 0;   // of where it is, by all scans
+    double surfels_heard = 0;   // by all scans; those that scatter or stray count less
     double most_voices = 0, voices = 0;   // for that offset, and in all
     Eigen::Vector3d sum_of_normals = Eigen::Vector3d::Zero();   // outward, of its walls as compared
     double num_normals = 0;

@@ -27,7 +27,7 @@ class PriorTracker {
   PriorTracker(const TrackingOptions& options, double scan_voxel_m, const std::optional<NearTiles>& prior, const Eigen::Isometry3d& T_map_first);
   /// Whether the prior is to be asked at that scan.
   bool asks(const Eigen::Isometry3d& T_odom_sensor) const;
-  /// The prior's word is asked each `keyframe_m`. @return what it was
+  /// Where it `asks`. @return what the prior says; none to a scan without surfels
   std::optional<PriorMatch> follow(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor);
   /// The odometry has a gap: the next scans are looked for far around their poses, until they fit clearly.
   void begin_anew();
@@ -45,6 +45,7 @@ class PriorTracker {
 
   PriorMatch word_of(const JointResult& match, std::size_t num_surfels) const;
   Matrix6d predicted_covariance(const Eigen::Isometry3d& T_odom_sensor) const;
+  double way_since_asked_m(const Eigen::Isometry3d& T_odom_sensor) const;
 
   TrackingOptions options_;
   double scan_voxel_m_;
@@ -52,11 +53,13 @@ class PriorTracker {
   JointRegistration registration_;
   Eigen::Isometry3d T_map_odom_;
   std::optional<Eigen::Isometry3d> T_odom_last_;   // where the prior was asked last
+  bool heard_last_ = false;                        // whether it held the scan then
   Matrix6d covariance_ = Matrix6d::Zero();         // of T_map_odom * T_odom_last, tangent in sensor axes
   PriorSurfels::Weights prior_weights_ = PriorSurfels::unweighted;
   std::vector<Hypothesis> hypotheses_;             // where the drive may have begun; the first is the one given
   PoseSearchOptions search_;                       // how far from there
   bool located_ = true;
+  double usual_score_ = 0.1;   // a surfel, where the drive was
   int num_heard_ = 0;
   std::size_t num_surfels_heard_ = 0;
 };

@@ -1,7 +1,6 @@
 #include "run_inputs.hpp"
 
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -79,22 +78,36 @@ std::string option_differences(const Json& was, const Json& is) {
   return text;
 }
 
-/// A hash says nothing to a user.
+/// What a difference of an input means; a hash says nothing to a user.
+struct Meaning {
+  const char *key, *words;
+  const char* shown = nullptr;   ///< what to show of before and now
+};
+
+/// The first that differs tells most: another recording has other stamps and another name too.
+constexpr Meaning meanings[] = {
+    {"/generator", "mapper is of another version", "/generator"},
+    {"/inputs/scans/dataset", "the recording is laid out as another dataset", "/inputs/scans/dataset"},
+    {"/inputs/scans/available", "the recording has another number of scans", "/inputs/scans/available"},
+    {"/inputs/scans/point_times", "the times of the points come from elsewhere", "/inputs/scans/point_times"},
+    {"/inputs/scans/names_and_sizes_sha256", "names, sizes or number of the scans' files differ"},
+    {"/inputs/scans/first_scan_sha256", "the first scan, or the times of its points, is another"},
+    {"/inputs/scans/stamps", "the stamps of the scans come from elsewhere", "/inputs/scans/stamps"},
+    {"/inputs/scans/stamps_sha256", "the stamps of the scans are others"},
+    {"/inputs/prior/sha256", "the prior is another", "/inputs/prior/name"},
+    {"/inputs/scans/name", "the recording has another name", "/inputs/scans/name"},
+    {"/inputs/prior/name", "the prior has another name", "/inputs/prior/name"},
+};
+
 std::string first_difference(const Json& was, const Json& is) {
-  static const std::map<std::string, std::string> words = {
-      {"/inputs/scans/names_and_sizes_sha256", "names, sizes or number of the scans' files differ"},
-      {"/inputs/scans/first_scan_sha256", "the first scan, or the times of its points, is another"},
-      {"/inputs/scans/stamps_sha256", "the stamps of the scans are others"},
-      {"/inputs/prior/sha256", "the prior is another"},
-  };
-  const Json flat_was = was.flatten(), flat_is = is.flatten();
-  const auto text = [](const Json& facts, const std::string& key) { return facts.contains(key) ? facts[key].dump() : std::string("not there"); };
-  for (const Json* facts : {&flat_was, &flat_is})
-    for (const auto& [key, value] : facts->items()) {
-      if (text(flat_was, key) == text(flat_is, key)) continue;
-      const auto found = words.find(key);
-      return found != words.end() ? found->second : key.substr(1) + " was " + text(flat_was, key) + ", is " + text(flat_is, key);
-    }
+  const auto at = [](const Json& facts, const std::string& key) { return facts.value(Json::json_pointer(key), Json()); };
+  const auto before_and_now = [&](const std::string& key) { return " was " + text_of(at(was, key)) + ", is " + text_of(at(is, key)); };
+  const auto differs = [&](const std::string& key) { return at(was, key) != at(is, key); };
+  for (const Meaning& meaning : meanings)
+    if (differs(meaning.key)) return meaning.words + (meaning.shown && differs(meaning.shown) ? ":" + before_and_now(meaning.shown) : "");
+  for (const Json& facts : {was.flatten(), is.flatten()})
+    for (const auto& [key, value] : facts.items())
+      if (differs(key)) return key.substr(1) + before_and_now(key);
   return {};
 }
 

@@ -30,7 +30,7 @@ std::string identity_of(const RunOptions& options, const MapperOptions& method, 
 /// The same of the run that wrote `run_json`. @throws FormatError when that is no run report
 std::string identity_in(const std::filesystem::path& run_json);
 
-/// What of two identities differs: all options (`--preset was "default", is "paper"`), for what else differs may follow from them; else the first of the inputs. Empty where nothing does.
+/// What of two identities differs: all options (`--preset was "default", is "paper"`), for what else differs may follow from them; else the input that tells most, in words. Empty where nothing does.
 std::string difference(const std::string& before, const std::string& now);
 
 }  // namespace priormap

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <vector>
 
+#include <priormap/core/reused.hpp>
 #include <priormap/registration/scan_reducer.hpp>
 #include <priormap/registration/surfel.hpp>
 
@@ -16,17 +17,14 @@ class ScansAgain {
  public:
   /// @param read  must outlive this
   ScansAgain(const ReadScan& read, double reduce_m, std::size_t num_keyframes, std::size_t room_bytes)
-      : read_(read), reduce_m_(reduce_m), room_bytes_(room_bytes), kept_(num_keyframes) {}
+      : read_(read), reducers_([reduce_m] { return ScanReducer(reduce_m); }), room_bytes_(room_bytes), kept_(num_keyframes) {}
 
   std::shared_ptr<const SurfelCloud> surfels_of(std::size_t keyframe, const ScanRecord& record);
 
  private:
-  ScanReducer take_reducer();
-
   const ReadScan& read_;
-  double reduce_m_;
+  Reused<ScanReducer> reducers_;
   std::mutex mutex_;
-  std::vector<ScanReducer> idle_;
   std::size_t room_bytes_;
   std::vector<std::shared_ptr<const SurfelCloud>> kept_;   // by keyframe
 };

@@ -65,6 +65,26 @@ void undo_motion(SurfelCloud& scan, const Vector6d& velocity) {
   }
 }
 
+double mean_time_s(const SurfelCloud& scan) {
+  double sum = 0;
+  for (const Surfel& surfel : scan.surfels) sum += static_cast<double>(surfel.time_s);
+  return scan.empty() ? 0 : sum / static_cast<double>(scan.size());
+}
+
+void count_times_from(SurfelCloud& scan, double time_s) {
+  if (time_s == 0) return;
+  for (Surfel& surfel : scan.surfels) surfel.time_s -= static_cast<float>(time_s);
+}
+
+void move(SurfelCloud& scan, const Eigen::Isometry3d& T_target_scan) {
+  const Eigen::Matrix3f R = T_target_scan.linear().cast<float>();
+  const Eigen::Vector3f t = T_target_scan.translation().cast<float>();
+  for (Surfel& surfel : scan.surfels) {
+    surfel.mean = R * surfel.mean + t;
+    surfel.covariance = turned(surfel.covariance, R);
+  }
+}
+
 double longest_time_s(const SurfelCloud& scan) {
   float longest = 0;
   for (const Surfel& surfel : scan.surfels) longest = std::max(longest, std::abs(surfel.time_s));

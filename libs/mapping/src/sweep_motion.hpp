@@ -20,6 +20,12 @@ void undo_motion(PointCloud& scan, const Vector6d& velocity);
 /// By the mean time of each surfel: exact in its mean to first order, also where a surfel holds points of several times.
 void undo_motion(SurfelCloud& scan, const Vector6d& velocity);
 
+/// Of the surfels [s, from the stamp]; 0 where there are none.
+double mean_time_s(const SurfelCloud& scan);
+void count_times_from(SurfelCloud& scan, double time_s);
+/// To the frame that the scan's lies in.
+void move(SurfelCloud& scan, const Eigen::Isometry3d& T_target_scan);
+
 /// The time of the surfel farthest from the stamp.
 double longest_time_s(const SurfelCloud& scan);
 

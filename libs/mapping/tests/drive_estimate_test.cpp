@@ -21,6 +21,7 @@ std::vector<ScanRecord> drive_with_a_gap() {
     step.T_odom_sensor = at(static_cast<double>(i));
     step.joined = i > 0 && (i < 10 || i > 14);
     step.began_anew = i == 14;
+    step.num_followed = i == 14 ? 4 : 0;
     step.information = step.joined ? Matrix6d(1e4 * Matrix6d::Identity()) : Matrix6d::Zero();
     step.figures.converged = step.joined;
     records.push_back({i, 0.1 * static_cast<double>(i), step, step.T_odom_sensor});
@@ -36,6 +37,18 @@ TEST(DriveEstimate, AcrossAGapNobodyIsSure) {
   EXPECT_GT(sigma_m(10), 50) << "followed apart, they belong to what comes";
   EXPECT_GT(sigma_m(15), 50);
   EXPECT_GT(sigma_m(29), 50);
+}
+
+TEST(DriveEstimate, ScansLostBeforeAGapStayWithWhatCameBefore) {
+  std::vector<ScanRecord> records = drive_with_a_gap();
+  records[14].odometry.num_followed = 1;
+  for (std::size_t i = 13; i < records.size(); ++i) records[i].T_map_online.translation().x() += 1000;   // found there in the prior
+  const auto poses = estimate_drive(records, std::nullopt, {}, {});
+  for (std::size_t i = 10; i < 13; ++i) {
+    EXPECT_NEAR(poses[i].T_map_sensor.translation().x(), static_cast<double>(i), 0.1);
+    EXPECT_LT(poses[i].covariance(3, 3), 5 * 5);
+  }
+  EXPECT_GT(poses[13].covariance(3, 3), 50 * 50);
 }
 
 TEST(DriveEstimate, TheLongerLostAtTheEndTheLessSure) {

@@ -60,15 +60,40 @@ TEST_F(Street, TheDefaultPresetFindsItsWayWithinCentimetres) {
   }
 }
 
-TEST_F(Street, ThePriorIsAskedEachFiveMetres) {
+TEST_F(Street, ThePriorIsAskedEachFiveMetresUntilItHoldsTheDriveAndThenEachTwenty) {
   const test::TiledPoints tiles(world_, 50);
   const NearTiles prior(tiles, MapFrame::local(), 150);
-  Mapper mapper(MapperOptions::preset("default"), prior, {pose(0.5, -0.4, 1.9, 0.03), pose(1.2, 0.05, 0, 0.02)}, 1);
-  for (int k = 0; k < num_scans; ++k) {
+  MapperOptions options = MapperOptions::preset("default");
+  std::get<JointMethodOptions>(options.method).tracking.start_keyframes = 2;
+  Mapper mapper(options, prior, {pose(0.5, -0.4, 1.9, 0.03), pose(1.2, 0.05, 0, 0.02)}, 1);
+  for (int k = 0; k < 25; ++k) {
     const MappedScan scan = mapper.step(scan_from(length_m, truth(k), static_cast<std::size_t>(k)));
-    EXPECT_EQ(scan.prior.has_value(), k % 5 == 0) << k;   // 1.2 m a scan
+    EXPECT_EQ(scan.prior.has_value(), k == 0 || k == 5 || k == 22) << k;   // 1.2 m a scan
     EXPECT_LT((scan.T_map_online.translation() - truth(k).translation()).norm(), 0.1) << k;
   }
+}
+
+/// Ninety metres of the drive are missing, and the stamps tell of it: until it is found again in the prior nobody says that it is anchored, and then it is known back to the gap.
+TEST_F(Street, ADriveIsFoundAgainInThePriorBeyondAGap) {
+  constexpr int before = 12, beyond = 40;
+  constexpr double long_m = 170, pause_s = 8;
+  const test::TiledPoints tiles(test::street(long_m, 1), 50);
+  const NearTiles prior(tiles, MapFrame::local(), 150);
+  const auto T = [](int k) { return pose(1.2 * k + (k < before ? 0 : 90), 0.3 * std::sin(0.1 * k), 1.7, 0.01 * k); };
+  const auto scan_at = [&](std::size_t k) {
+    Scan scan = scan_from(long_m, T(static_cast<int>(k)), k);
+    if (k >= before) scan.stamp_s += pause_s;
+    return scan;
+  };
+  Mapper mapper(MapperOptions::preset("default"), prior, {T(0), pose(1.2, 0.03, 0, 0.01)}, 1);
+  for (std::size_t k = 0; k < before + beyond; ++k) {
+    const Verdict verdict = mapper.step(scan_at(k)).verdict;
+    const bool may_be_anchored = k < before || k >= before + 15, must_be = k < before || k >= before + 30;
+    EXPECT_GE(verdict == Verdict::anchored, must_be) << k;
+    EXPECT_LE(verdict == Verdict::anchored, may_be_anchored) << k;
+  }
+  const auto scans = mapper.finish(scan_at);
+  for (std::size_t k = 0; k < before + beyond; ++k) EXPECT_LT(position_error(scans[k], T(static_cast<int>(k))), 0.15) << k;
 }
 
 TEST_F(Street, HeightsAreNoSurerThanPriorAndStartAgree) {

@@ -167,18 +167,58 @@ TEST_F(Run, GoesOnFromItsCheckpoint) {
   }
 }
 
+std::string refusal(const RunOptions& options) {
+  try {
+    run_mapper(options, 1, Overwrite::refuse, {});
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST_F(Run, ACheckpointOfOtherInputsIsRefusedInWords) {
+  namespace fs = std::filesystem;
+  const fs::path priors = folder_.path();
+  options_.prior = priors / "prior.ply";
+  options_.initial.pose = {0, 0, 1.7, 0, 0, 0, 1};
+  options_.checkpoint_s = 1e-9;
+  options_.resume = true;
+  interrupted_run(options_, 2);
+  const auto expect_words = [&](const std::string& words, const RunOptions& options) {
+    EXPECT_NE(refusal(options).find("is another one: " + words + "; leave out"), std::string::npos) << refusal(options);
+  };
+
+  PointCloud other_prior = read_point_cloud(options_.prior).points;
+  other_prior.xyz.pop_back();
+  write_point_cloud(priors / "other.ply", other_prior);
+  fs::copy_file(options_.prior, priors / "renamed.ply");
+  RunOptions other = options_;
+  other.prior = priors / "renamed.ply";
+  expect_words("the prior has another name: was \"prior.ply\", is \"renamed.ply\"", other);
+  other.prior = priors / "other.ply";
+  expect_words("the prior is another: was \"prior.ply\", is \"other.ply\"", other);
+  other.prior.clear();
+  expect_words("the prior is another: was \"prior.ply\", is not given", other);
+  fs::rename(options_.prior, priors / "kept.ply");
+  fs::rename(priors / "other.ply", options_.prior);
+  expect_words("the prior is another", options_);
+  fs::rename(priors / "kept.ply", options_.prior);
+
+  other = options_;
+  other.scans = folder_.path() / "drive";
+  fs::copy(options_.scans, other.scans);
+  expect_words("the recording has another name: was \"scans\", is \"drive\"", other);
+  test::write_text(other.scans / "times.txt", "0\n0.1\n0.2\n");
+  EXPECT_NE(refusal(other).find("the stamps of the scans come from elsewhere: was "), std::string::npos) << refusal(other);
+  fs::copy_file(options_.scans / "2.bin", other.scans / "3.bin");
+  fs::remove(other.scans / "times.txt");
+  expect_words("the recording has another number of scans: was 3, is 4", other);
+}
+
 TEST_F(Run, ACheckpointOfAnotherRunIsRefusedByName) {
   options_.checkpoint_s = 1e-9;
   options_.resume = true;
   interrupted_run(options_, 2);
-  const auto refusal = [&](RunOptions other) {
-    try {
-      run_mapper(other, 1, Overwrite::refuse, {});
-    } catch (const UsageError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
   RunOptions other = options_;
   other.preset = "default";
   EXPECT_NE(refusal(other).find("is another one: --preset was \"paper\", is \"default\"; leave out"), std::string::npos) << refusal(other);

@@ -339,18 +339,6 @@ std::vector<JointTarget> blurred(std::span<const JointTarget> targets, double si
   return wider;
 }
 
-/// Rolls and pitches of a disc.
-std::vector<Eigen::Matrix3d> tilts_within(double radius_rad, double step_rad) {
-  std::vector<Eigen::Matrix3d> tilts;
-  const int steps = int(radius_rad / step_rad);
-  for (int i = -steps; i <= steps; ++i)
-    for (int j = -steps; j <= steps; ++j) {
-      const Eigen::Vector3d tilt = step_rad * Eigen::Vector3d(i, j, 0);
-      if (tilt.norm() <= radius_rad) tilts.push_back(exp_so3(tilt).toRotationMatrix());
-    }
-  return tilts;
-}
-
 bool same_place(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   constexpr double near_m = 0.3, near_rad = 0.01;
   const Vector6d apart = local_coordinates(a, b);
@@ -373,16 +361,14 @@ std::vector<ScoredResult> JointRegistration::search(const SurfelCloud& scan, std
   std::vector<Start> starts;
   workspace_->prepare(scan, blurred(targets, search.sigma_m), guess, options_, std::max<std::size_t>(1, scan.size() / std::size_t(search.surfels)));
   const int steps = int(search.radius_m / search.step_m), turns = int(search.yaw_rad / search.step_rad);
-  const std::vector<Eigen::Matrix3d> tilts = tilts_within(search.tilt_rad, search.step_tilt_rad);
   for (int turn = -turns; turn <= turns; ++turn)
     for (int i = -steps; i <= steps; ++i)
-      for (int j = -steps; j <= steps; ++j)
-        for (const Eigen::Matrix3d& tilt : tilts) {
-          Eigen::Isometry3d T = guess;
-          T.linear() = Eigen::AngleAxisd(turn * search.step_rad, Eigen::Vector3d::UnitZ()) * guess.linear() * tilt;
-          T.translation() += search.step_m * Eigen::Vector3d(i, j, 0);
-          starts.push_back({score(T), T});
-        }
+      for (int j = -steps; j <= steps; ++j) {
+        Eigen::Isometry3d T = guess;
+        T.linear() = Eigen::AngleAxisd(turn * search.step_rad, Eigen::Vector3d::UnitZ()) * guess.linear();
+        T.translation() += search.step_m * Eigen::Vector3d(i, j, 0);
+        starts.push_back({score(T), T});
+      }
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.score > b.score; });
   starts.resize(std::min(starts.size(), std::size_t(search.refined)));
 

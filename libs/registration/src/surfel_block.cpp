@@ -26,13 +26,14 @@ void SurfelMap::Block::merge(std::span<const Item> items, std::span<const std::u
     auto entry = std::find_if(in_voxel, after_voxel, same);
     if (entry == after_voxel) entry = std::find_if(entries_.begin() + std::ptrdiff_t(before), entries_.end(), same);
     if (entry == entries_.end()) {
-      entries_.push_back({item.surfel, count * item.normal, count * item.sigma_m * item.sigma_m, item.voxel, item.of_prior, true, item.feature});
+      entries_.push_back({item.surfel, count * item.normal, count * item.sigma_m * item.sigma_m, item.trace, item.voxel, item.of_prior, true, item.feature});
       continue;
     }
     if (entry->surfel.count >= float(options.max_count)) continue;
     priormap::merge(entry->surfel, item.surfel);
     entry->normal_sum += count * item.normal;
     entry->variance_sum += count * item.sigma_m * item.sigma_m;
+    entry->trace_sum += item.trace;
     entry->changed = true;
   }
   if (entries_.size() != before) order_by_voxel();
@@ -66,10 +67,19 @@ void SurfelMap::Block::order_by_voxel() {
   shapes_ = std::move(shapes);
 }
 
+/// Traces of one laser in several scans make a plane, but of the motion that was believed: were that too little, they would lie in the laser's cone again, and hold the sensor where it is
+/// thought to be.
+bool SurfelMap::Block::lies_in_cone(const Entry& entry, const Eigen::Vector3f& normal) {
+  constexpr float least_share = 0.7f, least_cosine = 0.996f;   // of the points; five degrees
+  const float length = entry.trace_sum.norm();
+  return length > least_share * entry.surfel.count && std::abs(normal.dot(entry.trace_sum)) > least_cosine * length;
+}
+
 SurfelShape SurfelMap::Block::shape_of(const Entry& entry, float voxel_m) {
   const float sigma = std::sqrt(entry.variance_sum / entry.surfel.count);
   if (!entry.normal_sum.isZero(0)) return {entry.normal_sum.normalized(), 0, 1, sigma};
   SurfelShape shape = shape_of_moments(entry.surfel, voxel_m);
+  if (shape.directed > 0 && lies_in_cone(entry, shape.normal)) shape = {};
   if (entry.of_prior && shape.isotropic == 0 && shape.directed == 0) {  // point to point, as exact as points lie close
     shape.isotropic = 1;
     shape.sigma_m = 0.5f * voxel_m;

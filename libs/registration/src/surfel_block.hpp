@@ -17,6 +17,7 @@ struct SurfelMap::Item {
   bool of_prior = false;  // of use even where no plane can be told
   float sigma_m = 0;
   Surfel surfel;  // relative to the block's corner
+  Eigen::Vector3f trace = Eigen::Vector3f::Zero();  // of one laser: the normal of its cone there, times the points
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   std::uint32_t feature = PointCloud::no_feature;
 };
@@ -44,6 +45,7 @@ class SurfelMap::Block {
     Surfel surfel;
     Eigen::Vector3f normal_sum = Eigen::Vector3f::Zero();  // zero: the normal comes from the moments
     float variance_sum = 0;
+    Eigen::Vector3f trace_sum = Eigen::Vector3f::Zero();
     std::uint16_t voxel = 0;
     bool of_prior = false;
     bool changed = true;
@@ -52,6 +54,7 @@ class SurfelMap::Block {
 
   static bool belongs(const Entry& entry, const Item& item, const SurfelMapOptions& options);
   void order_by_voxel();
+  static bool lies_in_cone(const Entry& entry, const Eigen::Vector3f& normal);
   static SurfelShape shape_of(const Entry& entry, float voxel_m);
   void remake_shapes(float voxel_m);
 

@@ -9,6 +9,7 @@
 #include "instruction_set.hpp"
 #include "surfel_block.hpp"
 #include "surfel_map_view.hpp"
+#include "surfel_shape.hpp"
 
 namespace priormap {
 namespace {
@@ -16,6 +17,12 @@ namespace {
 int floor_of(double v) {
   const auto truncated = static_cast<int>(v);
   return truncated - (v < truncated);
+}
+
+/// Of the cone that a laser draws that spins about the sensor's z axis, where it meets `p`; zero on the axis.
+Eigen::Vector3f cone_normal(const Eigen::Vector3f& p) {
+  const Eigen::Vector3f across = Eigen::Vector3f::UnitZ() * p.squaredNorm() - p.z() * p;
+  return across.isZero(0) ? across : across.normalized();
 }
 
 }  // namespace
@@ -81,6 +88,7 @@ void SurfelMap::insert(const SurfelCloud& scan, const Eigen::Isometry3d& T_map_s
     Item item = place(T_map_scan * (scan.origin + s.mean.cast<double>()));
     item.surfel.count = s.count;
     item.surfel.covariance = turned(s.covariance, R);
+    if (!is_wide(s, float(options_.voxel_m))) item.trace = s.count * (R * cone_normal(s.mean));
     items.push_back(item);
   }
   insert_items(items);

@@ -6,16 +6,29 @@
 #include <priormap/core/symmetric.hpp>
 
 namespace priormap {
+namespace {
+
+/// Less wide than this (standard deviation) is the trace of one laser with its noise. It lies in the laser's cone, which travels with the sensor.
+float least_width_m(float voxel_m) { return std::min(0.08f, 0.2f * voxel_m); }
+
+}  // namespace
+
+bool is_wide(const Surfel& surfel, float voxel_m) {
+  const auto& c = surfel.covariance;   // xx, xy, xz, yy, yz, zz
+  const float trace = c[0] + c[3] + c[5], minors = c[0] * c[3] - c[1] * c[1] + c[0] * c[5] - c[2] * c[2] + c[3] * c[5] - c[4] * c[4];
+  const float least_m = least_width_m(voxel_m);
+  return minors > least_m * least_m * trace;   // of a plane: width^2 length^2 > least^2 (width^2 + length^2)
+}
 
 SurfelShape shape_of_moments(const Surfel& surfel, float voxel_m) {
   constexpr float least_points = 6, flatness = 0.1f, upright = 0.9f;
-  const float thin = 0.15f * voxel_m;
+  const float thin = 0.15f * voxel_m, narrow_m = least_width_m(voxel_m);
   SurfelShape shape;
   if (surfel.count < least_points) return shape;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(full_of(surfel.covariance));
   const Eigen::Vector3f l = solver.eigenvalues().cwiseMax(0.0f);
-  if (l[0] < flatness * l[1] && l[0] < thin * thin) {
+  if (l[0] < flatness * l[1] && l[0] < thin * thin && l[1] > narrow_m * narrow_m) {
     shape.normal = solver.eigenvectors().col(0);
     shape.directed = 1;
     shape.sigma_m = std::sqrt(l[0]);

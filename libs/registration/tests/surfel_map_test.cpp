@@ -126,6 +126,29 @@ TEST(SurfelMap, ScansAddUpToTheSurfaceTheyShow) {
   EXPECT_GT(planes, 16);
 }
 
+/// What one laser sees of something 10 m ahead: a metre across, as thick as the noise of its ranges.
+Surfel trace_at(const Eigen::Vector3f& p) {
+  const Eigen::Vector3f ray = p.normalized(), along = Eigen::Vector3f::UnitY();
+  const Eigen::Matrix3f covariance = along * along.transpose() / 12 + 0.02f * 0.02f * ray * ray.transpose();
+  Surfel surfel{.mean = p, .count = 20};
+  surfel.covariance << covariance(0, 0), covariance(0, 1), covariance(0, 2), covariance(1, 1), covariance(1, 2), covariance(2, 2);
+  return surfel;
+}
+
+TEST(SurfelMap, TracesOfOneLaserThatFollowItsRayAreNoPlane) {
+  const Eigen::Vector3f p(10, 0.5f, 2.3f);
+  const auto shape_of_both = [&](const Eigen::Vector3f& second) {
+    SurfelMap map;
+    for (const Eigen::Vector3f& one : {p, second}) map.insert(SurfelCloud{Eigen::Vector3d::Zero(), {trace_at(one)}}, Eigen::Isometry3d::Identity());
+    return map.nearest(p.cast<double>())->shape;
+  };
+  EXPECT_EQ(shape_of_both(p).directed, 0) << "one line";
+  EXPECT_EQ(shape_of_both(p + 0.4f * p.normalized()).directed, 0) << "as of a sensor that moved and is thought to stand";
+  const SurfelShape wall = shape_of_both(p + Eigen::Vector3f(0, 0, 0.4f));
+  EXPECT_EQ(wall.directed, 1);
+  EXPECT_GT(std::abs(wall.normal.x()), 0.99f);
+}
+
 TEST(SurfelMap, ForgetsBlocksThatAreFarAndKeepsTheRest) {
   SurfelMap map;
   PointCloud line;

@@ -134,13 +134,14 @@ std::size_t LidarModel::rays_per_scan() const {
 }
 
 const std::vector<std::string>& lidar_names() {
-  static const std::vector<std::string> names{"hdl64", "hdl32", "os1-128", "rig4"};
+  static const std::vector<std::string> names{"hdl64", "hdl32", "vlp16", "os1-128", "rig4"};
   return names;
 }
 
 LidarModel lidar_model(const std::string& name) {
   if (name == "hdl64") return {name, 10, {spinning(hdl64_elevations(), 2000, 120)}};
   if (name == "hdl32") return {name, 5, {spinning(evenly(10.67, -4.0 / 3, 32), 2250, 100)}};
+  if (name == "vlp16") return {name, 10, {spinning(evenly(15, -2, 16), 1800, 100)}};
   if (name == "os1-128") return {name, 10, {spinning(evenly(22.5, -45.0 / 127, 128), 1024, 100)}};
   if (name == "rig4") return rig4();
   std::string known;

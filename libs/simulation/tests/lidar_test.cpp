@@ -59,7 +59,8 @@ TEST(LidarModel, Hdl64HasTheAnglesOfItsTwoBlocks) {
   EXPECT_NEAR(elevations[32], -8.83 * degree, 1e-9);
   EXPECT_NEAR(elevations.back(), -24.33 * degree, 1e-9);
   EXPECT_EQ(model.rays_per_scan(), 128000u);
-  EXPECT_THROW(lidar_model("vlp16"), UsageError);
+  EXPECT_EQ(lidar_model("vlp16").rays_per_scan(), 16u * 1800u);
+  EXPECT_THROW(lidar_model("abacus"), UsageError);
 }
 
 TEST(Lidar, EveryRayInARoomMeetsItsWall) {

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cfloat>
 #include <cmath>
 #include <cstdlib>
@@ -18,6 +17,7 @@
 
 #include <priormap/core/error.hpp>
 
+#include "cell_set.hpp"
 #include "gdal_support.hpp"
 
 namespace priormap {
@@ -96,6 +96,35 @@ bool is_no_data(double value, double no_data, bool is_float32) {
   return is_float32 && std::abs(value - no_data) < 2 * static_cast<double>(FLT_EPSILON) * std::abs(value + no_data);
 }
 
+/// Of those cells that copies of a file have met. Thread-safe.
+class ImpossibleCells {
+ public:
+  /// A stretch of a row, read from column `col` on. @param is_possible  of a value as the file holds it, not NaN
+  template <class IsPossible>
+  void take(int row, int col, std::span<const double> values, const IsPossible& is_possible) {
+    const auto is_met = [&](double value) { return !std::isnan(value) && !is_possible(value); };
+    const std::lock_guard lock(mutex_);
+    for (auto first = std::ranges::find_if(values, is_met); first != values.end();) {
+      const auto last = std::find_if_not(first, values.end(), is_met);
+      cells_.insert(row, col + static_cast<int>(first - values.begin()), static_cast<int>(last - first));
+      const auto [lowest, highest] = std::minmax_element(first, last);
+      lowest_ = std::min(lowest_, *lowest);
+      highest_ = std::max(highest_, *highest);
+      first = std::find_if(last, values.end(), is_met);
+    }
+  }
+
+  ImpossibleHeights found(bool is_float32) const {
+    const std::lock_guard lock(mutex_);
+    return {cells_.size(), lowest_, highest_, is_float32};
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  CellSet cells_;
+  double lowest_ = std::numeric_limits<double>::infinity(), highest_ = -std::numeric_limits<double>::infinity();
+};
+
 }  // namespace
 
 /// GDAL's handles serve one thread at a time.
@@ -106,7 +135,7 @@ struct RasterFile::Open {
   std::int64_t bytes_a_row = 0;   ///< of the whole raster, decoded
   int block_height = 1;
   std::mutex mutex;
-  std::atomic<bool> has_met_impossible = false;
+  ImpossibleCells impossible;
 
   void read(const std::filesystem::path& file, const CellWindow& window, std::span<double> heights) {
     const std::lock_guard lock(mutex);
@@ -168,47 +197,29 @@ RasterFile::RasterFile(const std::filesystem::path& file, const std::optional<Cr
   if (crs && crs->heights_point_down()) lowest_ = -std::exchange(highest_, -lowest_);
 }
 
-void RasterFile::read_values(const CellWindow& window, std::span<double> values) const {
-  const QuietGdal quiet;
-  open_->read(file_, window, values);
-  if (!no_data_) return;
-  for (double& value : values)
-    if (is_no_data(value, *no_data_, is_float32_)) value = std::numeric_limits<double>::quiet_NaN();
-}
-
 void RasterFile::read(const CellWindow& window, std::span<double> heights) const {
-  read_values(window, heights);
-  const double scale = scale_, offset = offset_, lowest = lowest_, highest = highest_;
-  int num_impossible = 0;   // without a branch: most cells are heights
-  for (double& z : heights) {
-    const double height = z * scale + offset;
-    const bool is_possible = (height >= lowest) & (height <= highest);
-    num_impossible += !is_possible & (height == height);
-    z = is_possible ? height : std::numeric_limits<double>::quiet_NaN();
-  }
-  if (num_impossible > 0) open_->has_met_impossible = true;
+  const QuietGdal quiet;
+  open_->read(file_, window, heights);
+  if (no_data_)
+    for (double& value : heights)
+      if (is_no_data(value, *no_data_, is_float32_)) value = std::numeric_limits<double>::quiet_NaN();
+  const auto width = static_cast<std::size_t>(window.width);
+  for (int row = 0; row < window.height; ++row) to_heights(window.row + row, window.col, heights.subspan(static_cast<std::size_t>(row) * width, width));
 }
 
-ImpossibleHeights RasterFile::impossible_heights() const {
-  if (!open_->has_met_impossible) return {};
-  constexpr int cells_at_once = 1 << 20;
-  const int rows_at_once = std::max(1, cells_at_once / facts_.width);
-  ImpossibleHeights found{0, std::uint64_t(facts_.width) * std::uint64_t(facts_.height), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  std::vector<double> values;
-  for (int row = 0; row < facts_.height; row += rows_at_once) {
-    const CellWindow rows{0, row, facts_.width, std::min(rows_at_once, facts_.height - row)};
-    values.resize(static_cast<std::size_t>(rows.width) * static_cast<std::size_t>(rows.height));
-    read_values(rows, values);
-    for (const double value : values) {
-      const double z = value * scale_ + offset_;
-      if (std::isnan(z) || (z >= lowest_ && z <= highest_)) continue;
-      ++found.cells;
-      found.lowest = std::min(found.lowest, value);
-      found.highest = std::max(found.highest, value);
-    }
-  }
-  return found;
+void RasterFile::to_heights(int row, int col, std::span<double> values) const {
+  const double scale = scale_, offset = offset_, lowest = lowest_, highest = highest_;
+  const auto is_possible = [=](double value) {
+    const double height = value * scale + offset;
+    return (height >= lowest) & (height <= highest);
+  };
+  int num_impossible = 0;   // without a branch: most cells are heights
+  for (const double value : values) num_impossible += !is_possible(value) & (value == value);
+  if (num_impossible > 0) open_->impossible.take(row, col, values, is_possible);
+  for (double& value : values) value = is_possible(value) ? value * scale + offset : std::numeric_limits<double>::quiet_NaN();
 }
+
+ImpossibleHeights RasterFile::impossible_heights() const { return open_->impossible.found(is_float32_); }
 
 RasterFacts read_raster_facts(const std::filesystem::path& file) { return RasterFile(file).facts(); }
 

@@ -29,13 +29,13 @@ class RasterFile {
   /// Heights of a window inside the raster, row by row; NaN where there is none. What the file stores together with the rows of the window
   /// stays decoded: windows are best read row of windows by row of windows. @throws FormatError when the cells cannot be decoded.
   void read(const CellWindow& window, std::span<double> heights) const;
-  /// Of the whole file, which is read once more; nothing where no copy has read any. @throws FormatError as read
+  /// Of the cells that this and its copies have read.
   ImpossibleHeights impossible_heights() const;
 
  private:
   struct Open;
-  /// As the file holds them, NaN where it declares no data.
-  void read_values(const CellWindow& window, std::span<double> values) const;
+  /// @param values  of a stretch of a row from column `col` on, as the file holds them, NaN where it declares no data; become heights
+  void to_heights(int row, int col, std::span<double> values) const;
 
   std::filesystem::path file_;
   std::shared_ptr<Open> open_;

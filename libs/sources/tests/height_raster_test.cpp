@@ -148,7 +148,6 @@ TEST_F(HeightRasterTest, values_that_are_no_height_on_earth_are_no_data_and_coun
     EXPECT_TRUE(copy.at(500005.5, 4999995.5));
     const ImpossibleHeights impossible = raster.impossible_heights();
     EXPECT_EQ(impossible.cells, is_height ? 0u : 24u) << name;
-    EXPECT_EQ(impossible.of, is_height ? 0u : 80u);
     return impossible;
   };
   EXPECT_EQ(met({.value = with_hole(-9999)}, "voids.tif").lowest, -9999);
@@ -159,6 +158,29 @@ TEST_F(HeightRasterTest, values_that_are_no_height_on_earth_are_no_data_and_coun
   EXPECT_EQ(met({.value = with_hole(29000)}, "everest_in_feet.tif", Crs::parse("EPSG:32632+6360")).cells, 0u);
   EXPECT_EQ(met({.value = with_hole(29000)}, "too_high_in_metres.tif", Crs::parse("EPSG:32632+5773")).cells, 24u);
   EXPECT_EQ(met({.value = with_hole(5000), .adjust = [](GDALDataset& d) { d.GetRasterBand(1)->SetScale(0.1); }}, "decimetres.tif").cells, 0u);
+}
+
+TEST_F(HeightRasterTest, impossible_heights_are_those_of_the_cells_that_copies_have_read_each_counted_once) {
+  const auto voids = [](double col, double row) { return row >= 3 && col >= 5 ? -9000 - col : 100; };
+  const HeightRaster raster = open(write({.width = 300, .height = 200, .value = voids}));
+  const auto found_after_asking = [&](double col, double row) {
+    for (int copies = 0; copies < 2; ++copies) EXPECT_EQ(HeightRaster(raster).at(500000.5 + col, 4999999.5 - row).has_value(), voids(col, row) == 100);
+    return raster.impossible_heights();
+  };
+  const ImpossibleHeights of_first_block = found_after_asking(2, 2);
+  EXPECT_EQ(of_first_block.cells, (128u - 5) * (128 - 3));
+  EXPECT_EQ(of_first_block.lowest, -9127);
+  EXPECT_EQ(of_first_block.highest, -9005);
+  for (const auto& [col, row] : {std::pair(299, 0), {2, 199}, {150, 2}, {150, 150}, {299, 199}}) found_after_asking(col, row);
+  EXPECT_EQ(raster.impossible_heights().cells, (300u - 5) * (200 - 3));
+  EXPECT_EQ(raster.impossible_heights().lowest, -9299);
+}
+
+TEST_F(HeightRasterTest, what_nobody_asks_for_is_not_read_to_count_impossible_heights) {
+  const HeightRaster raster = open(write_mosaic_with_a_lost_east(folder_, [](double col, double) { return col < 3 ? -9999 : 100; }));
+  EXPECT_TRUE(raster.at(500100.5, 4999950.5));
+  EXPECT_EQ(raster.impossible_heights().cells, 3u * 100);
+  EXPECT_THROW(raster.at(500900.5, 4999950.5), FormatError);
 }
 
 TEST_F(HeightRasterTest, a_mask_band_hides_cells) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <optional>
 #include <stdexcept>
@@ -50,5 +51,19 @@ struct RasterFixture {
     GDALClose(dataset);
   }
 };
+
+/// A mosaic of 1200 x 100 cells of 1 m, as RasterFixture places them, of which those from column 600 on cannot be read.
+inline std::filesystem::path write_mosaic_with_a_lost_east(const std::filesystem::path& folder, const std::function<double(double col, double row)>& value) {
+  RasterFixture{.width = 600, .height = 100, .value = value}.write(folder / "west.tif");
+  const auto source = [](const std::string& name, const std::string& col) {
+    return "<SimpleSource><SourceFilename relativeToVRT='1'>" + name + "</SourceFilename><SourceBand>1</SourceBand>" +
+           "<SourceProperties RasterXSize='600' RasterYSize='100' DataType='Float32' BlockXSize='600' BlockYSize='1'/>" +
+           "<SrcRect xOff='0' yOff='0' xSize='600' ySize='100'/><DstRect xOff='" + col + "' yOff='0' xSize='600' ySize='100'/></SimpleSource>";
+  };
+  const std::filesystem::path file = folder / "mosaic.vrt";
+  std::ofstream(file) << "<VRTDataset rasterXSize='1200' rasterYSize='100'><SRS dataAxisToSRSAxisMapping='1,2'>EPSG:32632</SRS><GeoTransform>500000,1,0,5000000,0,-1</GeoTransform>"
+                      << "<VRTRasterBand dataType='Float32' band='1'>" << source("west.tif", "0") << source("lost.tif", "600") << "</VRTRasterBand></VRTDataset>";
+  return file;
+}
 
 }  // namespace priormap

@@ -29,6 +29,8 @@ os1_128          kitti  osm,dsm  --sensor os1-128
 rig4             kitti  osm,dsm  --sensor rig4
 kidnap           kitti  osm,dsm  --kidnap-at 200 --kidnap-scans 60       # scored on the own street
 hdl32            route  osm,dsm  --sensor hdl32 --speed 1.4 --mount-height 1.2 --wobble 4 --wobble-frequency 0.8   # NCLT-like
+hdl32_steady     kitti  osm,dsm  --sensor hdl32
+vlp16            kitti  osm,dsm  --sensor vlp16 --motion-distortion
 there_and_back   route  osm,dsm  --there-and-back
 END
 }

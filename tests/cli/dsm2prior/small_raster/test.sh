@@ -16,4 +16,4 @@ expect_in stdout "points                      20"
 sed -i /NODATA/d dem.asc
 succeeds dsm2prior dem.asc $options -o undeclared
 expect_in stdout "points                      5"
-[ "$(cat stderr)" = "dsm2prior: warning: dem.asc: 1 of 6 cells hold -9999, which is no height on Earth; they are left out. If it means no data, let the file say so: gdal_translate -a_nodata -9999 FILE NEW.tif" ] || die "$(cat stderr)"
+[ "$(cat stderr)" = "dsm2prior: warning: dem.asc: 1 of the cells read hold -9999, which is no height on Earth; they are left out. If it means no data, let the file say so: gdal_translate -a_nodata -9999 FILE NEW.tif" ] || die "$(cat stderr)"

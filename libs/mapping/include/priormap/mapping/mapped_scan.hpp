@@ -28,7 +28,7 @@ struct MappedScan {
   Vector6d velocity = Vector6d::Zero();     ///< rad/s, m/s in sensor axes
   bool motion_undone = false;               ///< within the sweep, by that velocity and the times of the points
   Verdict verdict = Verdict::lost;
-  bool contradicted = false;        ///< the walls of the prior are not where the scans around see walls
+  bool contradicted = false;        ///< the walls of the prior are not where the scans around see walls, or the drive was not found again beyond a gap
   Eigen::Vector3d weak_axis = Eigen::Vector3d::Zero();   ///< unit vector in map axes along which a weak pose is least sure; zero for others
   bool standstill = false;          ///< no pose of its own: repeats the last one
   std::size_t num_points = 0;       ///< as read, without those that are no measurement

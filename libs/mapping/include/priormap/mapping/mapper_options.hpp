@@ -40,7 +40,7 @@ struct OdometryOptions {
   JointOptions registration{.kernel_width = 2, .start_scale = 4, .max_iterations = 50};
   SurfelMapOptions local_map;
   double local_sigma_m = 0.02;
-  double min_share = 0.2;
+  double min_share = 0.03;
   double min_inlier_share = 0.5;
   PoseSearchOptions search;
   double local_map_radius_m = 100;
@@ -62,7 +62,8 @@ struct TrackingOptions {
   SurfelMapOptions prior;
   PoseSearchOptions search;
   int start_keyframes = 12;
-  double keyframe_m = 5;
+  double search_step_m = 5;
+  double keyframe_m = 20;
   double prior_sigma_m = 0.1;
   double prior_floor_m = 0.3;
   double drift_m = 0.02;
@@ -73,13 +74,14 @@ struct TrackingOptions {
   template <class Visitor>
   void describe(Visitor& visit) {
     visit("prior-voxel", prior.voxel_m, {"edge of the voxels of the prior", "m", 0.05, 10});
-    visit("keyframe", keyframe_m, {"way between scans that are matched to the prior", "m", 0, 100});
+    visit("keyframe", keyframe_m, {"way between scans that are matched to the prior where it holds the drive", "m", 0, 100});
+    visit("search-step", search_step_m, {"the same at the start and where the prior does not hold it", "m", 0, 100});
     visit("start-keyframes", start_keyframes, {"keyframes by which other places near the given start are compared with it; 0: it is trusted", "", 0, 1000});
     visit("start-radius", search.radius_m, {"distance from the given start up to which it may lie", "m", 0, 100});
     visit("start-angle", search.yaw_rad, {"angle from the given direction up to which it may be turned", "rad", 0, 3.2});
     visit("prior-sigma", prior_sigma_m, {"standard deviation added to that of a plane of the prior", "m", 0, 10});
     visit("prior-floor", prior_floor_m, {"no match to the prior is surer than this, for its errors hang together", "m", 0, 10});
-    visit("drift", drift_m, {"drift of the odometry from one keyframe to the next, standard deviation", "m", 1e-4, 10});
+    visit("drift", drift_m, {"drift of the odometry over the way of a search step, standard deviation", "m", 1e-4, 10});
     visit("drift-angle", drift_rad, {"the same of its direction", "rad", 1e-6, 1});
     visit("min-prior-share", min_share, {"share of a scan that the prior must know to be heard", "", 0, 1});
     visit("min-prior-inlier-share", min_inlier_share, {"share of that part that must fit", "", 0, 1});

@@ -57,16 +57,15 @@ class PriorWindow {
  public:
   using Tile = std::conditional_t<takes_patches, PatchCloud, PointCloud>;
   PriorWindow(NearTiles tiles, Map empty, std::function<void(Tile&)> amend = {})
-      : amend_(std::move(amend)), tiles_(std::move(tiles)), map_(std::move(empty)), prefetch_(std::make_unique<TilePrefetch<Tile>>([points = &tiles_.points()](TileKey key) { return load(*points, key); })) {}
+      : amend_(std::move(amend)), tiles_(std::move(tiles)), map_(std::move(empty)), prefetch_(std::make_unique<TilePrefetch<Tile>>([points = &tiles_.points(), frame = tiles_.frame()](TileKey key) { return tile_in_map(load(*points, key), *points, frame); })) {}
 
   /// Loads and drops, then returns what is there.
   const Map& around(const Eigen::Vector3d& p_map) {
     const auto arrived = tiles_.move_to(p_map);
     if (!arrived.empty()) map_.remove_beyond(p_map, tiles_.reach_m());
     for (Tile& tile : bring(arrived)) {
-      Tile here = tile_in_map(std::move(tile), tiles_.points(), tiles_.frame());
-      if (amend_) amend_(here);
-      map_.insert(here);
+      if (amend_) amend_(tile);
+      map_.insert(tile);
     }
     look_ahead(p_map);
     return map_;
@@ -86,6 +85,7 @@ class PriorWindow {
       return points.load(key);
   }
 
+  /// In `map`.
   std::vector<Tile> bring(const std::vector<TileKey>& keys) {
     std::vector<Tile> tiles(keys.size());
     std::vector<std::size_t> lacking;
@@ -96,6 +96,7 @@ class PriorWindow {
         lacking.push_back(i);
     }
     parallel_for(lacking.size(), tiles_.threads(), [&](std::size_t k) { tiles[lacking[k]] = load(tiles_.points(), keys[lacking[k]]); });
+    for (const std::size_t i : lacking) tiles[i] = tile_in_map(std::move(tiles[i]), tiles_.points(), tiles_.frame());   // a frame is one thread's
     return tiles;
   }
 

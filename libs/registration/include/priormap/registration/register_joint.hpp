@@ -42,14 +42,12 @@ struct JointOptions {
   }
 };
 
-/// Where to look for a pose that is badly known: a grid of starts around the guess, over x and y of the map, the yaw about its z axis, and roll and pitch about those of the scan.
+/// Where to look for a pose that is badly known: a grid of starts around the guess, over x and y of the map and the yaw about its z axis.
 struct PoseSearchOptions {
   double radius_m = 6.0;
   double yaw_rad = 0.21;
-  double tilt_rad = 0;
   double step_m = 1.0;
   double step_rad = 0.035;
-  double step_tilt_rad = 0.0175;
   double sigma_m = 0.3;      ///< of the residuals while starts are compared
   int surfels = 400;         ///< of the scan, for comparing starts
   int refined = 8;           ///< best starts that are registered

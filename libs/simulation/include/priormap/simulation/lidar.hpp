@@ -29,7 +29,7 @@ struct LidarModel {
 };
 
 /// "hdl64": Velodyne HDL-64E (32 lasers from +2 deg every 1/3 deg, 32 more from -8.83 deg every 1/2 deg; 0.18 deg in azimuth);
-/// "hdl32": HDL-32E (-30.67 to 10.67 deg, 0.16 deg); "os1-128": Ouster OS1-128 (45 deg in 128 beams, 1024 columns);
+/// "hdl32": HDL-32E (-30.67 to 10.67 deg, 0.16 deg); "vlp16": VLP-16 (-15 to 15 deg, 0.2 deg); "os1-128": Ouster OS1-128 (45 deg in 128 beams, 1024 columns);
 /// "rig4": two OS1-128 on the roof's sides and two forward- and backward-looking long-range sensors.
 /// @throws UsageError naming the known ones.
 LidarModel lidar_model(const std::string& name);

@@ -22,8 +22,9 @@ struct RasterFacts {
 /// Cells whose value is no height on Earth, -500 to 9000 m: marks of missing data that the file does not declare, or heights in a unit that it does not tell.
 /// They count as cells without data.
 struct ImpossibleHeights {
-  std::uint64_t cells = 0, of = 0;    ///< how many there are among all cells
-  double lowest = 0, highest = 0;     ///< of their values, as the file holds them
+  std::uint64_t cells = 0;          ///< how many there are, each counted once, among those that were read
+  double lowest = 0, highest = 0;   ///< of their values, as the file holds them
+  bool is_float32 = false;          ///< it holds them in single precision
 };
 
 /// Any raster that GDAL reads: plain paths, /vsi... paths, and zip archives with one raster inside (N43E007.hgt.zip).
@@ -32,7 +33,7 @@ RasterFacts read_raster_facts(const std::filesystem::path& file);
 
 /// Heights of a raster asked at places in another CRS. Memory is bounded: cells are read in blocks and the least used are dropped.
 /// No data value, NaN, mask band, alpha, scale and offset of the file are respected; band 1 holds the heights; impossible ones are none.
-/// One object per thread; copies open the file once more.
+/// One object per thread; copies share the open file.
 class HeightRaster {
  public:
   /// @param source  overrides the CRS in the file; give it a vertical part to say what undeclared heights are
@@ -53,7 +54,7 @@ class HeightRaster {
   /// Calls visit(x, y, z) for each cell with data whose centre lies in `bounds` (target CRS, half-open), row by row from the north-west.
   void for_each_inside(const Bounds2& bounds, const std::function<void(double x, double y, double z)>& visit) const;
 
-  /// Of the whole raster, which is read once more for them; nothing where neither this nor its copies have met any. @throws FormatError
+  /// Of the cells that this and its copies have read: around the places asked for, in blocks.
   ImpossibleHeights impossible_heights() const;
   const Crs& source() const;   ///< as in the file or as overridden
   double cell_size() const;    ///< edge of a cell (geometric mean) in the unit of the target CRS, at the raster's centre
