@@ -71,7 +71,7 @@ class PriorComparison {
   static constexpr double together_m = 40;
 
   PriorComparison(const NearTiles& prior, const PiecesOfPrior& pieces, const JointMethodOptions& options)
-      : window_(NearTiles(prior.points(), prior.frame(), options.estimate.range_m + together_m + margin_m, prior.threads()), PriorSurfels(options.tracking.prior),
+      : window_(NearTiles(prior.points(), prior.frame(), reach_m(options), prior.threads()), PriorSurfels(options.tracking.prior),
                 [&pieces](PatchCloud& patches) { pieces.move_buildings(patches); }),
         registrations_([how = one_step(options.tracking.registration)] { return JointRegistration(how); }) {}
 
@@ -94,7 +94,11 @@ class PriorComparison {
   double stated_building_sigma_m() const { return window_.map().stated_sigma_m(PriorSurfels::of_features); }
 
  private:
-  static constexpr double margin_m = 5;   // planes are known beyond what is compared
+  /// Planes are known beyond what is compared, as far as what is compared may lie from them.
+  static double reach_m(const JointMethodOptions& options) {
+    constexpr double least_margin_m = 5;
+    return options.estimate.range_m + together_m + std::max(least_margin_m, options.tracking.registration.max_distance_m);
+  }
   static JointOptions one_step(JointOptions options) {
     options.max_iterations = 1;
     return options;

@@ -56,7 +56,8 @@ class JointMethod : public MappingMethod {
     if (!records_.empty()) mapped.local = step.figures;
     if (step.began_anew) tracker_.begin_anew();
     const bool lost = !records_.empty() && !step.joined;
-    if (!lost && tracker_.asks(step.T_odom_sensor)) {
+    if (!lost) tracker_.go_on(step.T_odom_sensor);
+    if (!lost && tracker_.asks()) {
       if (const auto match = tracker_.follow(surfels(), step.T_odom_sensor)) {
         mapped.prior = match->figures;
         last_match_ = match;

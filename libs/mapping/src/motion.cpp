@@ -18,18 +18,17 @@ Eigen::Isometry3d predict(const Eigen::Isometry3d& T_map_before_last, const Eige
 }
 
 Eigen::Isometry3d motion_at_start(const ScanSource& source, std::size_t first, std::size_t last) {
-  constexpr double surfel_m = 0.5;
+  constexpr double surfel_m = 1;
   PoseSearchOptions around_rest;
   around_rest.radius_m = 4;   // 40 m/s at 10 Hz, 20 m/s at 5 Hz
   around_rest.step_m = 0.5;
   around_rest.yaw_rad = 0.1;
   const Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();
+  around_rest.against = rest;
   if (last - first < 2) return rest;
 
   ScanReducer reducer(surfel_m);
-  SurfelMapOptions fine;
-  fine.voxel_m = surfel_m;
-  SurfelMap map(fine);
+  SurfelMap map(SurfelMapOptions{.voxel_m = surfel_m});
   JointRegistration registration;
   const std::array targets = {JointTarget{&map, 0.02, 1.0, rest}};
   map.insert(reducer.reduce(source.read(first).points), rest);
@@ -38,7 +37,8 @@ Eigen::Isometry3d motion_at_start(const ScanSource& source, std::size_t first, s
   if (last - first < 3) return T_first_second;
   map.insert(second, T_first_second);
   const SurfelCloud third = reducer.reduce(source.read(first + 2).points);
-  return T_first_second.inverse() * registration.align(third, targets, T_first_second * T_first_second).T_map_scan;
+  const PosePrior steady{T_first_second * T_first_second, (Vector6d() << Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(100)).finished().asDiagonal()};   // to 0.1 m
+  return T_first_second.inverse() * registration.align(third, targets, steady.T_map_scan, steady).T_map_scan;
 }
 
 double period_at_start(const ScanSource& source, std::size_t first, std::size_t last) {

@@ -11,7 +11,7 @@ namespace priormap {
 namespace {
 
 SurfelCloud every(const SurfelCloud& scan, std::size_t stride) {
-  SurfelCloud some{scan.origin, {}};
+  SurfelCloud some{scan.origin, {}, {}};
   for (std::size_t i = 0; i < scan.size(); i += std::max<std::size_t>(stride, 1)) some.surfels.push_back(scan.surfels[i]);
   return some;
 }
@@ -57,16 +57,17 @@ void UsualFit::take(const MatchFigures& match) {
 Odometry::Odometry(const OdometryOptions& options, const Vector6d& first_velocity)
     : options_(options), registration_(options.registration), local_map_(options.local_map), T_odom_last_(Eigen::Isometry3d::Identity()), velocity_(first_velocity) {}
 
-/// Stamps that stand still say nothing, and no motion stays steady for long.
+/// Stamps that stand still say nothing.
 double Odometry::time_since_last(double middle_s) const {
   constexpr double usual_s = 0.1;
   const double duration_s = middle_s - middle_last_s_;
-  return duration_s > 0 ? std::min(duration_s, longest_steady_s) : usual_s;
+  return duration_s > 0 ? duration_s : usual_s;
 }
 
-/// No vehicle changes its speed much faster: where the street binds nothing, as in a tunnel, it goes on as before.
+/// No vehicle changes its speed much faster: where the street binds nothing, as in a tunnel, it goes on as before; but no motion stays steady for long.
 PosePrior Odometry::steady(double duration_s) const {
   constexpr double usual_m_s2 = 10, least_m = 0.1;   // stamps jitter
+  duration_s = std::min(duration_s, longest_steady_s);
   const double sigma_m = std::max(least_m, usual_m_s2 * duration_s * duration_s);
   const Vector6d information = (Vector6d() << Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(1 / (sigma_m * sigma_m))).finished();
   return {moved_on(T_odom_last_, velocity_, duration_s), information.asDiagonal()};
@@ -185,6 +186,7 @@ OdometryStep Odometry::followed_apart(SurfelCloud scan, double middle_s) {
   if (!found.began_anew) return found;
   found.num_followed = apart_->num_in_map_ - 1;
   const auto begun = std::exchange(apart_, nullptr);
+  begun->stamp_last_s_ = stamp_last_s_;
   *this = std::move(*begun);
   return found;
 }
@@ -193,8 +195,9 @@ OdometryStep Odometry::followed_apart(SurfelCloud scan, double middle_s) {
 OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
   const double middle_s = mean_time_s(scan);
   count_times_from(scan, middle_s);
-  if (num_in_map_ == 0) T_odom_last_ = moved_on(T_odom_last_, velocity_, middle_s);   // `odom` lies at the first stamp
-  OdometryStep found = step_in_middle(scan, stamp_s + middle_s);
+  const bool goes_on = stamp_s > std::exchange(stamp_last_s_, stamp_s);   // else the middles of two sweeps differ by chance
+  if (local_map_.empty()) T_odom_last_ = moved_on(T_odom_last_, velocity_, middle_s);   // `odom` lies at the first stamp
+  OdometryStep found = step_in_middle(scan, goes_on ? stamp_s + middle_s : stamp_s);
   if (middle_s == 0) return found;
   found.middle_s = middle_s;
   const Eigen::Isometry3d T_middle = found.T_odom_sensor;
@@ -228,7 +231,7 @@ OdometryStep Odometry::step_in_middle(SurfelCloud& scan, double middle_s) {
     } else if (!found.joined || fits_.doubts(found.figures)) {
       beyond_gap = find_beyond_gap(raw, scan, found, duration_s);
       if (!beyond_gap && gap_is_told(middle_s)) found.joined = false;
-      if (!found.joined) get_lost(moved_on(T_odom_last_, velocity_, duration_s), middle_s);
+      if (!found.joined) get_lost(steady(duration_s).T_map_scan, middle_s);
     }
     if (!found.joined) return followed_apart(raw, middle_s);
     fits_.take(found.figures);
@@ -250,7 +253,7 @@ OdometryStep Odometry::step_in_middle(SurfelCloud& scan, double middle_s) {
 }
 
 void Odometry::exchange(StateArchive& archive) {
-  archive(local_map_, T_odom_last_, middle_last_s_, velocity_, usual_period_s_, fits_, num_lost_, num_in_map_, num_to_rest_, num_to_give_up_);
+  archive(local_map_, T_odom_last_, stamp_last_s_, middle_last_s_, velocity_, usual_period_s_, fits_, num_lost_, num_in_map_, num_to_rest_, num_to_give_up_);
   bool is_lost = apart_ != nullptr;
   archive(is_lost);
   if (!is_lost) return apart_.reset();

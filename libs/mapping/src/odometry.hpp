@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -72,6 +73,7 @@ class Odometry {
   JointRegistration registration_;
   SurfelMap local_map_;
   Eigen::Isometry3d T_odom_last_;   // in the middle of the last scan that was matched,
+  double stamp_last_s_ = -std::numeric_limits<double>::infinity();
   double middle_last_s_ = 0;
   Vector6d velocity_;               // and there
   double usual_period_s_ = 0;   // of the scan before

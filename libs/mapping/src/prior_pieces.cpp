@@ -261,16 +261,16 @@ std::vector<bool> PiecesOfPrior::contradicted(std::size_t num_poses) const {
 }
 
 std::vector<bool> PiecesOfPrior::held(std::size_t num_poses) const {
-  constexpr double enough = 0.5;
   std::vector<bool> result(num_poses);
   for (const PieceFactor& factor : factors_)
-    if (trust(pieces_[factor.piece]) > enough) result[factor.pose] = true;
+    if (holds(pieces_[factor.piece])) result[factor.pose] = true;
   return result;
 }
 
 CommonVariance PiecesOfPrior::common_variance(const PieceSigmas& sigmas, const PieceShares& shares) const {
   std::array<double, piece_kinds.size()> count{};
-  for (const Piece& piece : pieces_) count[static_cast<std::size_t>(piece.kind)] += trust(piece);
+  for (const Piece& piece : pieces_)
+    if (holds(piece)) count[static_cast<std::size_t>(piece.kind)] += trust(piece);   // many that hold nothing would tell of a place by their number
   // Told by sources that err each in its own way; each piece tells as much as its kind is sure.
   const auto common_to = [&](std::initializer_list<PieceKind> kinds, double share) {
     double information = 0, number = 0;

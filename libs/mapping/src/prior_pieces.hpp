@@ -85,7 +85,7 @@ class PiecesOfPrior {
   CommonVariance common_variance(const PieceSigmas& sigmas, const PieceShares& shares) const;
   /// Around which poses the prior's walls are not where the scans see walls: the poses are wrong, or the prior is of another place. What knows few walls contradicts nothing.
   std::vector<bool> contradicted(std::size_t num_poses) const;
-  /// Which poses were compared with pieces.
+  /// Which poses saw a piece that is trusted.
   std::vector<bool> held(std::size_t num_poses) const;
   std::size_t size() const { return pieces_.size(); }
 
@@ -103,6 +103,7 @@ class PiecesOfPrior {
   };
   /// Share that counts of what scans tell of a piece: little where they hardly see it.
   static double trust(const Piece& piece);
+  static bool holds(const Piece& piece) { return trust(piece) > 0.5; }
   /// The piece that a comparison is with; none where it tells nothing.
   std::optional<PieceId> piece_of(const PlaneMatch& match, const Eigen::Vector3d& sensor);
   void take_outset(PieceKind kind);

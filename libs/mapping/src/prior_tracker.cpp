@@ -17,7 +17,7 @@ double translation_information(const Matrix6d& information) { return information
 /// Every `stride`th surfel of the scan, without roofs: they would lift the pose where no ground holds it.
 SurfelCloud without_roofs(const SurfelCloud& scan, const Eigen::Matrix3d& R_map_sensor, double voxel_m, std::size_t stride) {
   const Eigen::Matrix3f R = R_map_sensor.cast<float>();
-  SurfelCloud kept{scan.origin, {}};
+  SurfelCloud kept{scan.origin, {}, {}};
   kept.surfels.reserve(scan.size() / stride + 1);
   for (std::size_t i = 0; i < scan.size(); i += stride) {
     const Surfel& surfel = scan.surfels[i];
@@ -37,7 +37,7 @@ Matrix6d PriorTracker::predicted_covariance(const Eigen::Isometry3d& T_odom_sens
   Vector6d drift;
   drift << Eigen::Vector3d::Constant(options_.drift_rad), Eigen::Vector3d::Constant(options_.drift_m);
   const Matrix6d A = adjoint(T_odom_sensor.inverse() * *T_odom_last_);
-  const double steps = std::max(1.0, way_since_asked_m(T_odom_sensor) / options_.search_step_m);
+  const double steps = std::max(1.0, way_since_asked_m_ / options_.search_step_m);
   return A * covariance_ * A.transpose() + Matrix6d((steps * drift.cwiseAbs2()).asDiagonal());
 }
 
@@ -45,11 +45,16 @@ Matrix6d PriorTracker::predicted_covariance(const Eigen::Isometry3d& T_odom_sens
 /// in a good prior 0.12 where it is and 0.02 at a wrong place, in a poor one 0.01 where it is.
 void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
   constexpr double clear_gain = 0.02, least_score = 0.02, usual_loss = 0.04;   // a surfel
+  constexpr double near_weight = 25;   // 1 m, 2.3 degrees
   const auto targets = map.targets(options_.prior_sigma_m, prior_weights_), to_compare = map.targets(options_.prior_sigma_m, PriorSurfels::unweighted);
   if (hypotheses_.empty()) {
     const Eigen::Isometry3d T_start = T_map_odom_ * T_odom_sensor;
     const Eigen::Isometry3d T_given = registration_.align(scan, targets, T_start, PosePrior{T_start, start_information(T_start)}).T_map_scan;
     hypotheses_.push_back({T_given * T_odom_sensor.inverse(), 0});
+    // Of a street that says little along it a loose start may slide by metres; what is near it is another place to be compared.
+    const Eigen::Isometry3d T_near = registration_.align(scan, targets, T_start, PosePrior{T_start, near_weight * start_information(T_start)}).T_map_scan;
+    hypotheses_.push_back({T_near * T_odom_sensor.inverse(), 0});
+    if (located_) search_.against = T_given;
     for (const ScoredResult& other : registration_.search(scan, targets, T_given, search_))
       hypotheses_.push_back({other.match.T_map_scan * T_odom_sensor.inverse(), 0});
   }
@@ -71,9 +76,9 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
   if (++num_heard_ >= enough) located_ = located_ || score > std::max(least_score, usual_score_ - usual_loss);
   const bool in_vain = num_heard_ >= enough && !located_ && score < least_score;
   if (num_heard_ < options_.start_keyframes && !in_vain) return;
-  if (located_) usual_score_ = score;
   hypotheses_.clear();
-  if (!located_) begin_anew();
+  if (!located_) return begin_anew();
+  usual_score_ = score;
 }
 
 void PriorTracker::begin_anew() {
@@ -88,16 +93,19 @@ void PriorTracker::begin_anew() {
 
 void PriorTracker::exchange(StateArchive& archive) {
   if (prior_) archive(*prior_);
-  archive(T_map_odom_, T_odom_last_, heard_last_, covariance_, prior_weights_, hypotheses_, search_, located_, usual_score_, num_heard_, num_surfels_heard_);
+  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_, search_, located_, usual_score_, num_heard_, num_surfels_heard_);
 }
 
-bool PriorTracker::asks(const Eigen::Isometry3d& T_odom_sensor) const {
+void PriorTracker::go_on(const Eigen::Isometry3d& T_odom_sensor) {
+  way_since_asked_m_ += (T_odom_sensor.translation() - p_odom_).norm();
+  p_odom_ = T_odom_sensor.translation();
+}
+
+bool PriorTracker::asks() const {
   if (!prior_ || !T_odom_last_) return prior_.has_value();
   const bool is_held = num_heard_ >= options_.start_keyframes && heard_last_;
-  return way_since_asked_m(T_odom_sensor) >= (is_held ? options_.keyframe_m : options_.search_step_m);
+  return way_since_asked_m_ >= (is_held ? options_.keyframe_m : options_.search_step_m);
 }
-
-double PriorTracker::way_since_asked_m(const Eigen::Isometry3d& T_odom_sensor) const { return (T_odom_sensor.translation() - T_odom_last_->translation()).norm(); }
 
 PriorMatch PriorTracker::word_of(const JointResult& match, std::size_t num_surfels) const {
   PriorMatch found;
@@ -145,6 +153,7 @@ std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, co
   }
   heard_last_ = accepted;
   T_odom_last_ = T_odom_sensor;
+  way_since_asked_m_ = 0;
   for (std::size_t i = 0; i < prior_weights_.size(); ++i) {
     const double floor_m = std::max(options_.prior_floor_m, map.stated_sigma_m(i));
     prior_weights_[i] = 1 / (1 + translation_information(match.targets[i].information / targets[i].weight) * floor_m * floor_m / 3);

@@ -25,8 +25,10 @@ class PriorTracker {
  public:
   /// @param scan_voxel_m  to which the scans are reduced
   PriorTracker(const TrackingOptions& options, double scan_voxel_m, const std::optional<NearTiles>& prior, const Eigen::Isometry3d& T_map_first);
-  /// Whether the prior is to be asked at that scan.
-  bool asks(const Eigen::Isometry3d& T_odom_sensor) const;
+  /// To each scan that the odometry joined.
+  void go_on(const Eigen::Isometry3d& T_odom_sensor);
+  /// Whether the prior is to be asked there.
+  bool asks() const;
   /// Where it `asks`. @return what the prior says; none to a scan without surfels
   std::optional<PriorMatch> follow(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor);
   /// The odometry has a gap: the next scans are looked for far around their poses, until they fit clearly.
@@ -45,7 +47,6 @@ class PriorTracker {
 
   PriorMatch word_of(const JointResult& match, std::size_t num_surfels) const;
   Matrix6d predicted_covariance(const Eigen::Isometry3d& T_odom_sensor) const;
-  double way_since_asked_m(const Eigen::Isometry3d& T_odom_sensor) const;
 
   TrackingOptions options_;
   double scan_voxel_m_;
@@ -53,6 +54,8 @@ class PriorTracker {
   JointRegistration registration_;
   Eigen::Isometry3d T_map_odom_;
   std::optional<Eigen::Isometry3d> T_odom_last_;   // where the prior was asked last
+  Eigen::Vector3d p_odom_ = Eigen::Vector3d::Zero();
+  double way_since_asked_m_ = 0;                   // from scan to scan: who manoeuvres in place drifts as well
   bool heard_last_ = false;                        // whether it held the scan then
   Matrix6d covariance_ = Matrix6d::Zero();         // of T_map_odom * T_odom_last, tangent in sensor axes
   PriorSurfels::Weights prior_weights_ = PriorSurfels::unweighted;

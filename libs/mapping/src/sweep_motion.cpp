@@ -58,10 +58,12 @@ void undo_motion(PointCloud& scan, const Vector6d& velocity) {
 
 void undo_motion(SurfelCloud& scan, const Vector6d& velocity) {
   const Sweep sweep(velocity);
-  for (Surfel& surfel : scan.surfels) {
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    Surfel& surfel = scan.surfels[i];
     if (surfel.time_s == 0) continue;
     surfel.mean += sweep.shift(surfel.mean, surfel.time_s);
     surfel.covariance = turned(surfel.covariance, sweep.turn(surfel.time_s));
+    if (!scan.around.empty()) scan.around[i].normal = sweep.turn(surfel.time_s) * scan.around[i].normal;
   }
 }
 
@@ -83,6 +85,7 @@ void move(SurfelCloud& scan, const Eigen::Isometry3d& T_target_scan) {
     surfel.mean = R * surfel.mean + t;
     surfel.covariance = turned(surfel.covariance, R);
   }
+  for (SurfelShape& shape : scan.around) shape.normal = R * shape.normal;
 }
 
 double longest_time_s(const SurfelCloud& scan) {

@@ -73,6 +73,19 @@ TEST_F(Street, ThePriorIsAskedEachFiveMetresUntilItHoldsTheDriveAndThenEachTwent
   }
 }
 
+/// Which is where a straight line from one place to the next tells nothing of the drift.
+TEST_F(Street, ThePriorIsAskedOfAVehicleThatManoeuvresInPlaceToo) {
+  const test::TiledPoints tiles(world_, 50);
+  const NearTiles prior(tiles, MapFrame::local(), 150);
+  MapperOptions options = MapperOptions::preset("default");
+  std::get<JointMethodOptions>(options.method).tracking.start_keyframes = 2;
+  const auto to_and_fro = [](int k) { return pose(4 + 3 * std::sin(0.3 * k), 0, 1.7, 0); };
+  Mapper mapper(options, prior, {to_and_fro(0), to_and_fro(0).inverse() * to_and_fro(1)}, 1);
+  int times_asked = 0;
+  for (int k = 0; k < 50; ++k) times_asked += mapper.step(scan_from(length_m, to_and_fro(k), static_cast<std::size_t>(k))).prior.has_value();
+  EXPECT_EQ(times_asked, 3);   // at the start, after 5 m and after 25 of 27 m
+}
+
 /// Ninety metres of the drive are missing, and the stamps tell of it: until it is found again in the prior nobody says that it is anchored, and then it is known back to the gap.
 TEST_F(Street, ADriveIsFoundAgainInThePriorBeyondAGap) {
   constexpr int before = 12, beyond = 40;

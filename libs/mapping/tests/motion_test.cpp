@@ -2,6 +2,8 @@
 
 #include <priormap/mapping/motion.hpp>
 
+#include "scans_of_street.hpp"
+
 namespace priormap {
 namespace {
 
@@ -25,6 +27,24 @@ TEST(Motion, PredictionGoesOnByTheSameStep) {
 TEST(Motion, WhatStandsStillStays) {
   const auto T = pose(2.0, 0.2, {5, 6, 7});
   EXPECT_TRUE(predict(T, T).isApprox(T, 1e-12));
+}
+
+/// The first three scans of a drive.
+Eigen::Isometry3d motion_from(double x, double m_s, double m_s2) {
+  const auto way_m = [&](double t_s) { return x + m_s * t_s + m_s2 / 2 * t_s * t_s; };
+  return motion_at_start(test::ScansOfStreet(street::canyon_with_piers(), street::vlp16, 3, way_m), 0, 3);
+}
+
+TEST(MotionAtStart, OfSixteenLasersIsFoundAtSpeed) {
+  for (const auto& [x, m_s] : {std::pair(0.0, 10.0), {0.0, 15.0}, {0.0, 20.0}, {10.0, 15.0}, {10.0, 20.0}})
+    EXPECT_LT(street::distance(motion_from(x, m_s, 0), pose(0, 0, {0.1 * m_s, 0, 0})), 0.03) << x << " m, " << m_s << " m/s";
+}
+
+TEST(MotionAtStart, OfSixteenLasersIsFoundFromRest) {
+  for (const double x : {0.0, 10.0, 55.0}) {
+    EXPECT_LT(street::distance(motion_from(x, 0, 0), Eigen::Isometry3d::Identity()), 0.01) << x;
+    EXPECT_LT(street::distance(motion_from(x, 0, 2.5), pose(0, 0, {0.0375, 0, 0})), 0.03) << x;
+  }
 }
 
 }  // namespace

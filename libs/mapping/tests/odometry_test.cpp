@@ -4,9 +4,12 @@
 
 #include <cmath>
 
+#include <priormap/mapping/motion.hpp>
 #include <priormap/registration/scan_reducer.hpp>
 
+#include "scans_of_street.hpp"
 #include "street.hpp"
+#include "sweep_motion.hpp"
 
 namespace priormap {
 namespace {
@@ -34,15 +37,40 @@ TEST(Odometry, RingsOnTheGroundDoNotHideThatThePlatformBeginsRocking) {
 
 /// The ring of a laser is a line as wide as its noise, which travels with the sensor; of few lasers hardly anything else is seen.
 TEST(Odometry, FollowsASensorOfSixteenLasers) {
-  constexpr street::Laser vlp16{.rings = 16, .columns = 1800, .lowest_rad = -0.262, .highest_rad = 0.262};
   const street::World world = street::town(60, 3);
   ScanReducer reducer(1.0);
   Odometry odometry({}, (Vector6d() << Eigen::Vector3d::Zero(), 8, 0, 0).finished());
   for (int k = 0; k < 20; ++k) {
     const Eigen::Isometry3d T = street::pose(0.8 * k, 0.05 * k, 1.7, 0.01 * k);
-    SurfelCloud scan = reducer.reduce(street::scan(world, T, vlp16, static_cast<unsigned>(k)));
+    SurfelCloud scan = reducer.reduce(street::scan(world, T, street::vlp16, static_cast<unsigned>(k)));
     EXPECT_LT(street::distance(odometry.step(scan, 0.1 * k).T_odom_sensor, street::pose(0, 0, 1.7, 0).inverse() * T), 0.1) << k;
   }
+}
+
+/// How far it says that it drove where little but piers tells, of how far it did.
+double share_driven(const test::ScansOfStreet& scans) {
+  ScanReducer reducer(1.0);
+  Odometry odometry({}, steady_velocity(Eigen::Isometry3d::Identity(), motion_at_start(scans, 0, scans.size()), period_at_start(scans, 0, scans.size())));
+  OdometryStep step;
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    SurfelCloud scan = reducer.reduce(scans.read(k).points);
+    step = odometry.step(scan, scans.stamp_s(k));
+    EXPECT_EQ(step.joined, k > 0) << k;
+  }
+  const Eigen::Isometry3d truth = scans.pose(0).inverse() * scans.pose(scans.size() - 1);
+  EXPECT_LT((step.T_odom_sensor.translation() - truth.translation()).tail<2>().norm(), 0.2);
+  EXPECT_LT(street::angle(step.T_odom_sensor, truth), 0.01);
+  return step.T_odom_sensor.translation().x() / truth.translation().x();
+}
+
+TEST(Odometry, OfSixteenLasersFollowsACarThatSetsOffInAStreetOfWalls) {
+  const auto way_m = [](double t_s) { return t_s < 3 ? 5.0 / 3 * t_s * t_s : 15 + 10 * (t_s - 3); };   // to 10 m/s
+  EXPECT_NEAR(share_driven(test::ScansOfStreet(street::canyon_with_piers(), street::vlp16, 36, way_m)), 1, 0.01);
+}
+
+TEST(Odometry, OfSixteenLasersFollowsACarThatIsAtSpeedInAStreetOfWalls) {
+  for (const double first_x : {0.0, 10.0, 30.0})
+    EXPECT_NEAR(share_driven(test::ScansOfStreet(street::canyon_with_piers(), street::vlp16, 20, [&](double t_s) { return first_x + 14 * t_s; })), 1, 0.01) << first_x;
 }
 
 /// Into a turn and to a stop, the stamps at the sweeps' beginnings.

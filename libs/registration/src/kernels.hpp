@@ -46,6 +46,14 @@ struct Nearest {
   float *squared, *second_squared;
 };
 
+/// Geman-McClure weights, wider for what tells of one direction.
+struct Kernel {
+  float width2;                // of the squared whitened residuals,
+  float more2 = 0;             // and what is added to it for a surfel that tells of nothing but `direction`; for others by the share that they tell of it
+  float direction[3] = {0, 0, 0};   // of unit length, in the axes of the map
+  float inlier_width2;         // below, a correspondence counts as an inlier
+};
+
 /// Sums in the axes of the map: order xx xy xz xr.. of the upper triangle row by row, tangent [rotation about the sensor, translation].
 struct Sums {
   float H[21];
@@ -64,9 +72,8 @@ struct Table {
                        std::size_t count, const Nearest& out);
   /// Squared residual over its variance; -1 where there is no correspondence. x, y, z as from transform.
   void (*whitened)(const Pose& pose, const Source& source, const Correspondences& c, const float* x, const float* y, const float* z, float* out);
-  /// Adds up the normal equations with Geman-McClure weights of squared width `width2` on the whitened squares; below `inlier_width2` they count as inliers.
-  void (*accumulate)(const Pose& pose, const Source& source, const Correspondences& c, const float* x, const float* y, const float* z, float width2,
-                     float inlier_width2, Sums& sums);
+  /// Adds up the normal equations.
+  void (*accumulate)(const Pose& pose, const Source& source, const Correspondences& c, const float* x, const float* y, const float* z, const Kernel& kernel, Sums& sums);
 };
 
 extern const Table portable;

@@ -221,8 +221,7 @@ void whitened(const Pose& pose, const Source& source, const Correspondences& c, 
   }
 }
 
-void accumulate(const Pose& pose, const Source& source, const Correspondences& c, const float* x, const float* y, const float* z, float width2,
-                float inlier_width2, Sums& sums) {
+void accumulate(const Pose& pose, const Source& source, const Correspondences& c, const float* x, const float* y, const float* z, const Kernel& kernel, Sums& sums) {
   constexpr int terms = 30;  // H, g, and the three counts
   float lane_sums[terms][group];
   for (std::size_t part = 0; part < group; part += LANES) {
@@ -231,7 +230,8 @@ void accumulate(const Pose& pose, const Source& source, const Correspondences& c
       const Residual r = residual_at(pose, source, c, x, y, z, i);
       const vint used = (r.isotropic != 0.0f) | (r.directed != 0.0f);
       const vfloat u2 = r.squared * r.per_variance;
-      const vfloat root = width2 / (width2 + u2);
+      const vfloat across = kernel.direction[0] * r.nx + kernel.direction[1] * r.ny + kernel.direction[2] * r.nz, tells = r.isotropic + r.directed * across * across;
+      const vfloat width2 = kernel.width2 + kernel.more2 * tells, root = width2 / (width2 + u2);
       const vfloat weight = used ? root * root * r.per_variance : all(0.0f);
       const vfloat a = weight * r.isotropic, b = weight * r.directed;
       const vfloat px = load(x + i) - pose.t[0], py = load(y + i) - pose.t[1], pz = load(z + i) - pose.t[2];
@@ -251,7 +251,7 @@ void accumulate(const Pose& pose, const Source& source, const Correspondences& c
       const vfloat fx = e * r.nx + a * r.dx, fy = e * r.ny + a * r.dy, fz = e * r.nz + a * r.dz;
       s[21] += py * fz - pz * fy, s[22] += pz * fx - px * fz, s[23] += px * fy - py * fx;
       s[24] += fx, s[25] += fy, s[26] += fz;
-      const vint inlier = used & (u2 < inlier_width2);
+      const vint inlier = used & (u2 < kernel.inlier_width2);
       s[27] += used ? all(1.0f) : all(0.0f);
       s[28] += inlier ? all(1.0f) : all(0.0f);
       s[29] += inlier ? r.squared : all(0.0f);

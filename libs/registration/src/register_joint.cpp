@@ -2,6 +2,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <priormap/core/error.hpp>
@@ -20,10 +21,12 @@ constexpr std::size_t lanes = 16;
 struct SourceColumns {
   std::array<std::vector<float>, 10> columns;  // x y z, covariance, variance
   std::size_t count = 0;
+  bool sparse = false;   // of few lasers
 
   /// Every `stride`-th surfel.
   void assign(const SurfelCloud& scan, double point_sigma_m, std::size_t stride = 1) {
     count = (scan.size() + stride - 1) / stride;
+    sparse = !scan.around.empty();
     const std::size_t padded = (count + lanes - 1) / lanes * lanes;
     for (auto& column : columns) column.assign(padded, 0.0f);
     std::fill(columns[9].begin(), columns[9].end(), 1.0f);  // keeps the padding finite
@@ -68,7 +71,17 @@ struct Linearization {
   Vector6d g = Vector6d::Zero();
   std::size_t correspondences = 0, inliers = 0;
   double inlier_squares = 0;
+  Eigen::Vector3d doubted = Eigen::Vector3d::Zero();   // direction in sensor axes of which less is known, by this factor, than H says
+  double doubt = 1;
 };
+
+/// Of unit length, in sensor axes; zero where nothing is known.
+Eigen::Vector3d weakest_direction(const Matrix6d& H) {
+  if (H.isZero(0)) return Eigen::Vector3d::Zero();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
+  axes.computeDirect(H.bottomRightCorner<3, 3>());
+  return axes.eigenvectors().col(0);
+}
 
 /// Turns sums in map axes into sensor axes.
 Linearization from_sums(const kernels::Sums& sums, const Eigen::Matrix3d& R_map_sensor) {
@@ -93,6 +106,7 @@ class TargetState {
  public:
   void begin(const JointTarget& target, std::size_t count, std::size_t padded, const Eigen::Isometry3d& guess) {
     target_ = target;
+    weakest_.setZero();
     view_.emplace(*target.map);
     anchor_ = view_->anchor_voxel(target.T_target_map * guess.translation());
     count_ = count;
@@ -105,7 +119,8 @@ class TargetState {
     for (auto* squares : {&squared_, &second_squared_}) squares->resize(count);
   }
 
-  Linearization linearize(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T_map_scan,
+  /// @param sparse  whether few surfels are planes: then the many that tell nothing of the weakest direction must not outvote the few that do
+  Linearization linearize(const kernels::Table& table, const kernels::Source& source, bool sparse, const Eigen::Isometry3d& T_map_scan,
                           const JointOptions& options, double least_scale) {
     const Eigen::Isometry3d T = target_.T_target_map * T_map_scan;
     const kernels::Pose pose = kernel_pose(T, view_->corner(anchor_));
@@ -113,11 +128,13 @@ class TargetState {
     search(table, options);
     const kernels::Correspondences c = correspondences();
     table.whitened(pose, source, c, data(x), data(y), data(z), data(whitened));
-    const double scale = std::max(least_scale, robust_scale());
+    const double scale = std::max(least_scale, robust_scale()), weakest_scale = weakest_.isZero() ? scale : std::max(scale, scale_along(weakest_));
     kernels::Sums sums;
-    table.accumulate(pose, source, c, data(x), data(y), data(z), float(std::pow(options.kernel_width * scale, 2)),
-                     float(std::pow(options.kernel_width, 2)), sums);
+    table.accumulate(pose, source, c, data(x), data(y), data(z), kernel_of(scale, weakest_scale, options), sums);
     Linearization out = from_sums(sums, T.linear());
+    out.doubt = std::pow(std::max(1.0, weakest_scale) / std::max(1.0, scale), 2);
+    out.doubted = T.linear().transpose() * weakest_.cast<double>();
+    if (sparse) weakest_ = (T.linear() * weakest_direction(out.H)).cast<float>();
     const double weight = target_.weight / std::pow(std::max(1.0, scale), 2);
     out.H *= weight;
     out.g *= weight;
@@ -144,21 +161,47 @@ class TargetState {
   /// Sum over the surfels that have a match: a little for one that fits, much off for one that does not. Where a scan meets the trace of another, as it does
   /// where it stood still, more find a match; that alone must not win.
   double score(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) {
+    look_up(table, source, T_map_scan, options);
+    constexpr double par = 0.85;
+    double sum = 0;
+    for (std::size_t i = 0; i < count_; ++i)
+      if (columns_[whitened][i] >= 0) sum += fit(i, options) - par;
+    return target_.weight * sum;
+  }
+
+  /// The same, each by the share of its way from `against` that its match would notice.
+  double contrast(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T_map_scan, const Eigen::Isometry3d& against, const JointOptions& options) {
+    look_up(table, source, T_map_scan, options);
+    constexpr double par = 0.5, least_way_m = 0.1;
+    const Eigen::Matrix3f R = (target_.T_target_map.linear() * (T_map_scan.linear() - against.linear())).cast<float>();
+    const Eigen::Vector3f t = (target_.T_target_map.linear() * (T_map_scan.translation() - against.translation())).cast<float>();
+    double sum = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (columns_[whitened][i] < 0) continue;
+      const Eigen::Vector3f way = R * Eigen::Vector3f(source.x[i], source.y[i], source.z[i]) + t;
+      const float way2 = way.squaredNorm();
+      if (way2 < least_way_m * least_way_m) continue;
+      sum += double(tells_of(way / std::sqrt(way2), i)) * (fit(i, options) - par);
+    }
+    return target_.weight * sum;
+  }
+
+ private:
+  double fit(std::size_t i, const JointOptions& options) const {
+    const double width2 = options.kernel_width * options.kernel_width;
+    return width2 / (width2 + double(columns_[whitened][i]));
+  }
+
+  /// Residuals at a pose, correspondences searched anew.
+  void look_up(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) {
     const Eigen::Isometry3d T = target_.T_target_map * T_map_scan;
     const kernels::Pose pose = kernel_pose(T, view_->corner(anchor_));
     table.transform(pose, source, data(x), data(y), data(z));
     std::fill_n(gap2_.begin(), count_, -1.0f);
     search(table, options);
     table.whitened(pose, source, correspondences(), data(x), data(y), data(z), data(whitened));
-    const double width2 = options.kernel_width * options.kernel_width;
-    constexpr double par = 0.85;
-    double sum = 0;
-    for (std::size_t i = 0; i < count_; ++i)
-      if (columns_[whitened][i] >= 0) sum += width2 / (width2 + double(columns_[whitened][i])) - par;
-    return target_.weight * sum;
   }
 
- private:
   enum Column { x, y, z, searched_x, searched_y, searched_z, mean_x, mean_y, mean_z, normal_x, normal_y, normal_z, isotropic, directed, variance, whitened };
 
   float* data(Column c) { return columns_[c].data(); }
@@ -224,6 +267,37 @@ class TargetState {
     return 1.4826 * std::sqrt(double(*middle));
   }
 
+  /// The same of those that tell of a direction, each by how much it does; to 3 %. None without a direction.
+  double scale_along(const Eigen::Vector3f& direction) {
+    constexpr int dropped_bits = 19, bins = 0x7f800000 >> dropped_bits;   // 16 an octave
+    const std::size_t stride = std::max<std::size_t>(1, count_ / 4096);
+    std::array<float, bins> weights{};
+    float all = 0;
+    for (std::size_t i = 0; i < count_; i += stride) {
+      if (!(columns_[whitened][i] >= 0 && columns_[whitened][i] < std::numeric_limits<float>::infinity())) continue;
+      const float weight = tells_of(direction, i);
+      weights[std::bit_cast<std::uint32_t>(columns_[whitened][i]) >> dropped_bits] += weight;
+      all += weight;
+    }
+    float sum = 0;
+    for (std::uint32_t bin = 0; bin < bins; ++bin)
+      if ((sum += weights[bin]) > 0.5f * all) return 1.4826 * std::sqrt(double(std::bit_cast<float>((bin << dropped_bits) | (1u << (dropped_bits - 1)))));
+    return 0.0;
+  }
+
+  /// Share that the match of surfel `i` tells of a shift in that direction.
+  float tells_of(const Eigen::Vector3f& direction, std::size_t i) const {
+    const float along = direction.dot(Eigen::Vector3f(columns_[normal_x][i], columns_[normal_y][i], columns_[normal_z][i]));
+    return columns_[isotropic][i] * direction.squaredNorm() + columns_[directed][i] * along * along;
+  }
+
+  /// Where a street binds little along it, nearly all surfels fit wherever on it the scan is put. They are many and set the scale, by which the few that know better would be outliers.
+  kernels::Kernel kernel_of(double scale, double weakest_scale, const JointOptions& options) const {
+    const double width2 = std::pow(options.kernel_width * scale, 2), weakest_width2 = std::pow(options.kernel_width * weakest_scale, 2);
+    return {float(width2), float(weakest_width2 - width2), {weakest_.x(), weakest_.y(), weakest_.z()}, float(std::pow(options.kernel_width, 2))};
+  }
+
+  Eigen::Vector3f weakest_ = Eigen::Vector3f::Zero();   // the direction of which the last linearisation told least, in map axes
   JointTarget target_;
   std::optional<SurfelMapView> view_;
   Eigen::Vector3i anchor_ = Eigen::Vector3i::Zero();
@@ -259,6 +333,8 @@ TargetResult result_of(const Linearization& l) {
   out.num_inliers = l.inliers;
   out.inlier_rmse_m = l.inliers == 0 ? 0.0 : std::sqrt(l.inlier_squares / double(l.inliers));
   out.information = l.H;
+  Vector6d told = l.H.rightCols<3>() * l.doubted;
+  if (const double all = l.doubted.dot(told.tail<3>()); all > 0) out.information -= (1 - 1 / l.doubt) / all * told * told.transpose();
   return out;
 }
 
@@ -302,7 +378,7 @@ JointResult JointRegistration::align(const SurfelCloud& scan, std::span<const Jo
     const double least_scale = std::max(options_.min_scale, options_.start_scale * std::pow(0.5, result.iterations));
     w.R_map_scan = result.T_map_scan.linear();
     for (std::size_t t = 0; t < targets.size(); ++t) {
-      parts[t] = w.targets[t].linearize(*w.table, source, result.T_map_scan, options_, least_scale);
+      parts[t] = w.targets[t].linearize(*w.table, source, w.source.sparse, result.T_map_scan, options_, least_scale);
       H += parts[t].H;
       g += parts[t].g;
     }
@@ -328,6 +404,16 @@ std::vector<PlaneMatch> JointRegistration::plane_matches(std::size_t t) const {
 double JointRegistration::score(const Eigen::Isometry3d& T_map_scan) {
   double sum = 0;
   for (TargetState& target : workspace_->targets) sum += target.score(*workspace_->table, workspace_->source.view(), T_map_scan, options_);
+  return sum;
+}
+
+/// What speaks for a pose rather than for another.
+double JointRegistration::gain(const Eigen::Isometry3d& T_map_scan, const Eigen::Isometry3d& against) {
+  double sum = 0;
+  for (TargetState& target : workspace_->targets) {
+    sum += target.contrast(*workspace_->table, workspace_->source.view(), T_map_scan, against, options_);
+    sum -= target.contrast(*workspace_->table, workspace_->source.view(), against, T_map_scan, options_);
+  }
   return sum;
 }
 
@@ -360,6 +446,7 @@ std::vector<ScoredResult> JointRegistration::search(const SurfelCloud& scan, std
   };
   std::vector<Start> starts;
   workspace_->prepare(scan, blurred(targets, search.sigma_m), guess, options_, std::max<std::size_t>(1, scan.size() / std::size_t(search.surfels)));
+  const auto rank = [&](const Eigen::Isometry3d& T) { return search.against ? gain(T, *search.against) : score(T); };
   const int steps = int(search.radius_m / search.step_m), turns = int(search.yaw_rad / search.step_rad);
   for (int turn = -turns; turn <= turns; ++turn)
     for (int i = -steps; i <= steps; ++i)
@@ -367,7 +454,7 @@ std::vector<ScoredResult> JointRegistration::search(const SurfelCloud& scan, std
         Eigen::Isometry3d T = guess;
         T.linear() = Eigen::AngleAxisd(turn * search.step_rad, Eigen::Vector3d::UnitZ()) * guess.linear();
         T.translation() += search.step_m * Eigen::Vector3d(i, j, 0);
-        starts.push_back({score(T), T});
+        starts.push_back({rank(T), T});
       }
   std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.score > b.score; });
   starts.resize(std::min(starts.size(), std::size_t(search.refined)));
@@ -376,7 +463,9 @@ std::vector<ScoredResult> JointRegistration::search(const SurfelCloud& scan, std
   for (const Start& start : starts) {
     const JointResult match = align(scan, targets, start.T);
     const bool known = std::any_of(found.begin(), found.end(), [&](const ScoredResult& other) { return same_place(other.match.T_map_scan, match.T_map_scan); });
-    if (!known) found.push_back({match, score(scan, targets, match.T_map_scan, 0)});
+    if (known) continue;
+    workspace_->prepare(scan, targets, match.T_map_scan, options_, 1);
+    found.push_back({match, rank(match.T_map_scan)});
   }
   std::stable_sort(found.begin(), found.end(), [](const ScoredResult& a, const ScoredResult& b) { return a.score > b.score; });
   return found;

@@ -1,7 +1,10 @@
 #include <algorithm>
 #include <limits>
 #include <priormap/core/error.hpp>
+#include <priormap/core/symmetric.hpp>
 #include <priormap/registration/scan_reducer.hpp>
+
+#include "surfel_shape.hpp"
 
 namespace priormap {
 namespace {
@@ -23,6 +26,20 @@ bool any_of_three(vint4 v) {
 
 std::uint64_t key_of(std::int32_t x, std::int32_t y, std::int32_t z) {
   return (std::uint64_t(std::uint32_t(x + half_range)) << 42) | (std::uint64_t(std::uint32_t(y + half_range)) << 21) | std::uint32_t(z + half_range);
+}
+
+/// Sums carry from axis to axis and wrap around as if there were one number: at the rim of the range alone that is wrong, where nothing lies.
+std::uint64_t neighbour_of(std::uint64_t key, std::int32_t x, std::int32_t y, std::int32_t z) {
+  return key + (std::uint64_t(std::int64_t(x)) << 42) + (std::uint64_t(std::int64_t(y)) << 21) + std::uint64_t(std::int64_t(z));
+}
+
+/// What the way of scanning draws travels with the sensor, and holds it where it was thought to be: rings flat in the lasers' cones, and a wall seen so slantwise that one column of points
+/// stands alone, as a pole does. But of a pole each laser hits some.
+bool is_of_the_scanning(const SurfelShape& shape, const Surfel& all) {
+  constexpr float most_cosine = 0.9f, least_width_m = 0.02f;
+  if (shape.directed > 0) return std::abs(shape.normal.dot(cone_normal(all.mean))) > most_cosine;
+  const Eigen::Vector3f across = shape.normal.cross(all.mean).normalized();
+  return shape.isotropic > 0 && across.dot(full_of(all.covariance) * across) < least_width_m * least_width_m;
 }
 
 Eigen::Vector3f centre_of(std::uint64_t key) {
@@ -107,6 +124,33 @@ void ScanReducer::add(const float* xyz, const float* time_s, std::size_t count) 
   place[0] = first, place[1] = second, place[2] = third;
 }
 
+/// Where few surfels are wide enough to show the surface they lie on.
+void ScanReducer::tell_from_around(SurfelCloud& scan) const {
+  constexpr std::size_t enough_wide = 600;
+  const auto wide = [&](const Surfel& surfel) { return is_wide(surfel, voxel_m_); };
+  if (std::size_t(std::ranges::count_if(scan.surfels, wide)) >= enough_wide) return;
+  scan.around.resize(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Surfel& surfel = scan.surfels[i];
+    if (wide(surfel)) continue;
+    const Surfel all = merged_around(i, scan);
+    const SurfelShape shape = shape_around(all, voxel_m_);
+    if (!is_of_the_scanning(shape, all)) scan.around[i] = shape;
+  }
+}
+
+/// All points of the 27 voxels around one.
+Surfel ScanReducer::merged_around(std::size_t i, const SurfelCloud& scan) const {
+  Surfel all = scan.surfels[i];
+  for (const std::int32_t x : {-1, 0, 1})
+    for (const std::int32_t y : {-1, 0, 1})
+      for (const std::int32_t z : {-1, 0, 1}) {
+        const std::uint32_t cell = slots_[slot_of(neighbour_of(cells_[i].key, x, y, z))];
+        if (cell != i && cell != no_cell) merge(all, scan.surfels[cell]);
+      }
+  return all;
+}
+
 SurfelCloud ScanReducer::reduce(const PointCloud& scan) {
   cells_.clear();
   std::fill(slots_.begin(), slots_.end(), no_cell);
@@ -122,6 +166,7 @@ SurfelCloud ScanReducer::reduce(const PointCloud& scan) {
   out.origin = scan.origin;
   out.surfels.reserve(cells_.size());
   for (const Cell& cell : cells_) out.surfels.push_back(surfel_of(cell.sums, voxel_m_ * centre_of(cell.key), timed));
+  tell_from_around(out);
   return out;
 }
 

@@ -26,7 +26,7 @@ void SurfelMap::Block::merge(std::span<const Item> items, std::span<const std::u
     auto entry = std::find_if(in_voxel, after_voxel, same);
     if (entry == after_voxel) entry = std::find_if(entries_.begin() + std::ptrdiff_t(before), entries_.end(), same);
     if (entry == entries_.end()) {
-      entries_.push_back({item.surfel, count * item.normal, count * item.sigma_m * item.sigma_m, item.trace, item.voxel, item.of_prior, true, item.feature});
+      entries_.push_back({item.surfel, count * item.normal, count * item.sigma_m * item.sigma_m, item.trace, item.around, item.voxel, item.of_prior, true, item.feature});
       continue;
     }
     if (entry->surfel.count >= float(options.max_count)) continue;
@@ -34,6 +34,7 @@ void SurfelMap::Block::merge(std::span<const Item> items, std::span<const std::u
     entry->normal_sum += count * item.normal;
     entry->variance_sum += count * item.sigma_m * item.sigma_m;
     entry->trace_sum += item.trace;
+    if (!item.around.tells_nothing()) entry->around = item.around;
     entry->changed = true;
   }
   if (entries_.size() != before) order_by_voxel();
@@ -69,18 +70,26 @@ void SurfelMap::Block::order_by_voxel() {
 
 /// Traces of one laser in several scans make a plane, but of the motion that was believed: were that too little, they would lie in the laser's cone again, and hold the sensor where it is
 /// thought to be.
-bool SurfelMap::Block::lies_in_cone(const Entry& entry, const Eigen::Vector3f& normal) {
-  constexpr float least_share = 0.7f, least_cosine = 0.996f;   // of the points; five degrees
+float SurfelMap::Block::cosine_to_cone(const Entry& entry, const Eigen::Vector3f& normal) {
+  constexpr float least_share = 0.7f;   // of the points
   const float length = entry.trace_sum.norm();
-  return length > least_share * entry.surfel.count && std::abs(normal.dot(entry.trace_sum)) > least_cosine * length;
+  return length > least_share * entry.surfel.count ? std::abs(normal.dot(entry.trace_sum)) / length : 0.0f;
 }
 
 SurfelShape SurfelMap::Block::shape_of(const Entry& entry, float voxel_m) {
   const float sigma = std::sqrt(entry.variance_sum / entry.surfel.count);
   if (!entry.normal_sum.isZero(0)) return {entry.normal_sum.normalized(), 0, 1, sigma};
   SurfelShape shape = shape_of_moments(entry.surfel, voxel_m);
-  if (shape.directed > 0 && lies_in_cone(entry, shape.normal)) shape = {};
-  if (entry.of_prior && shape.isotropic == 0 && shape.directed == 0) {  // point to point, as exact as points lie close
+  constexpr float in_cone = 0.996f, near_cone = 0.9f;   // 5 and 26 degrees
+  if (shape.directed > 0) {
+    const float cosine = cosine_to_cone(entry, shape.normal);
+    if (cosine > in_cone)
+      shape = {};
+    else if (cosine > near_cone)
+      shape = shape_around(entry.surfel, voxel_m);
+  }
+  if (shape.tells_nothing()) shape = entry.around;
+  if (entry.of_prior && shape.tells_nothing()) {  // point to point, as exact as points lie close
     shape.isotropic = 1;
     shape.sigma_m = 0.5f * voxel_m;
   }

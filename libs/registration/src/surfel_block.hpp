@@ -19,6 +19,7 @@ struct SurfelMap::Item {
   Surfel surfel;  // relative to the block's corner
   Eigen::Vector3f trace = Eigen::Vector3f::Zero();  // of one laser: the normal of its cone there, times the points
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  SurfelShape around;
   std::uint32_t feature = PointCloud::no_feature;
 };
 
@@ -46,6 +47,7 @@ class SurfelMap::Block {
     Eigen::Vector3f normal_sum = Eigen::Vector3f::Zero();  // zero: the normal comes from the moments
     float variance_sum = 0;
     Eigen::Vector3f trace_sum = Eigen::Vector3f::Zero();
+    SurfelShape around;   // of the scan that told last
     std::uint16_t voxel = 0;
     bool of_prior = false;
     bool changed = true;
@@ -54,7 +56,7 @@ class SurfelMap::Block {
 
   static bool belongs(const Entry& entry, const Item& item, const SurfelMapOptions& options);
   void order_by_voxel();
-  static bool lies_in_cone(const Entry& entry, const Eigen::Vector3f& normal);
+  static float cosine_to_cone(const Entry& entry, const Eigen::Vector3f& normal);
   static SurfelShape shape_of(const Entry& entry, float voxel_m);
   void remake_shapes(float voxel_m);
 

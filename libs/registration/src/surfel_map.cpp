@@ -19,12 +19,6 @@ int floor_of(double v) {
   return truncated - (v < truncated);
 }
 
-/// Of the cone that a laser draws that spins about the sensor's z axis, where it meets `p`; zero on the axis.
-Eigen::Vector3f cone_normal(const Eigen::Vector3f& p) {
-  const Eigen::Vector3f across = Eigen::Vector3f::UnitZ() * p.squaredNorm() - p.z() * p;
-  return across.isZero(0) ? across : across.normalized();
-}
-
 }  // namespace
 
 SurfelMap::SurfelMap(const SurfelMapOptions& options) : options_(options) {
@@ -84,11 +78,16 @@ void SurfelMap::insert(const SurfelCloud& scan, const Eigen::Isometry3d& T_map_s
   std::vector<Item> items;
   items.reserve(scan.size());
   const Eigen::Matrix3f R = T_map_scan.linear().cast<float>();
-  for (const Surfel& s : scan.surfels) {
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Surfel& s = scan.surfels[i];
     Item item = place(T_map_scan * (scan.origin + s.mean.cast<double>()));
     item.surfel.count = s.count;
     item.surfel.covariance = turned(s.covariance, R);
     if (!is_wide(s, float(options_.voxel_m))) item.trace = s.count * (R * cone_normal(s.mean));
+    if (!scan.around.empty()) {
+      item.around = scan.around[i];
+      item.around.normal = R * item.around.normal;
+    }
     items.push_back(item);
   }
   insert_items(items);

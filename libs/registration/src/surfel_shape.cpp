@@ -11,18 +11,9 @@ namespace {
 /// Less wide than this (standard deviation) is the trace of one laser with its noise. It lies in the laser's cone, which travels with the sensor.
 float least_width_m(float voxel_m) { return std::min(0.08f, 0.2f * voxel_m); }
 
-}  // namespace
-
-bool is_wide(const Surfel& surfel, float voxel_m) {
-  const auto& c = surfel.covariance;   // xx, xy, xz, yy, yz, zz
-  const float trace = c[0] + c[3] + c[5], minors = c[0] * c[3] - c[1] * c[1] + c[0] * c[5] - c[2] * c[2] + c[3] * c[5] - c[4] * c[4];
-  const float least_m = least_width_m(voxel_m);
-  return minors > least_m * least_m * trace;   // of a plane: width^2 length^2 > least^2 (width^2 + length^2)
-}
-
-SurfelShape shape_of_moments(const Surfel& surfel, float voxel_m) {
+SurfelShape shape_wider_than(float narrow_m, const Surfel& surfel, float voxel_m) {
   constexpr float least_points = 6, flatness = 0.1f, upright = 0.9f;
-  const float thin = 0.15f * voxel_m, narrow_m = least_width_m(voxel_m);
+  const float thin = 0.15f * voxel_m;
   SurfelShape shape;
   if (surfel.count < least_points) return shape;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
@@ -40,6 +31,27 @@ SurfelShape shape_of_moments(const Surfel& surfel, float voxel_m) {
     shape.sigma_m = std::sqrt(l[1]);
   }
   return shape;
+}
+
+}  // namespace
+
+bool is_wide(const Surfel& surfel, float voxel_m) {
+  const auto& c = surfel.covariance;   // xx, xy, xz, yy, yz, zz
+  const float trace = c[0] + c[3] + c[5], minors = c[0] * c[3] - c[1] * c[1] + c[0] * c[5] - c[2] * c[2] + c[3] * c[5] - c[4] * c[4];
+  const float least_m = least_width_m(voxel_m);
+  return minors > least_m * least_m * trace;   // of a plane: width^2 length^2 > least^2 (width^2 + length^2)
+}
+
+SurfelShape shape_of_moments(const Surfel& surfel, float voxel_m) { return shape_wider_than(least_width_m(voxel_m), surfel, voxel_m); }
+
+SurfelShape shape_around(const Surfel& all, float voxel_m) {
+  constexpr float least_width = 0.25f;   // voxels: of two traces at least
+  return shape_wider_than(least_width * voxel_m, all, voxel_m);
+}
+
+Eigen::Vector3f cone_normal(const Eigen::Vector3f& p) {
+  const Eigen::Vector3f across = Eigen::Vector3f::UnitZ() * p.squaredNorm() - p.z() * p;
+  return across.isZero(0) ? across : across.normalized();
 }
 
 Eigen::Vector3f normal_of(const Surfel& surfel, double voxel_m) {

@@ -6,7 +6,13 @@ namespace priormap {
 /// The shape of a surfel from its moments alone.
 SurfelShape shape_of_moments(const Surfel& surfel, float voxel_m);
 
+/// The shape of what lies in the 27 voxels around one: single traces of several lasers.
+SurfelShape shape_around(const Surfel& all, float voxel_m);
+
 /// Whether its points spread across the trace of one laser: by the invariants of their moments, without their axes.
 bool is_wide(const Surfel& surfel, float voxel_m);
+
+/// Of the cone that a laser draws that spins about the sensor's z axis, where it meets `p`, from the sensor; zero on the axis.
+Eigen::Vector3f cone_normal(const Eigen::Vector3f& p);
 
 }  // namespace priormap

@@ -4,6 +4,7 @@
 #include <priormap/registration/observability.hpp>
 #include <priormap/registration/register_joint.hpp>
 #include <priormap/registration/scan_reducer.hpp>
+#include <random>
 
 #include "street.hpp"
 
@@ -95,6 +96,97 @@ TEST(JointRegistrationInACanyon, TheInformationSaysThatAlongTheStreetNothingIsKn
   const Observability o = observability(result.targets[0].information);
   EXPECT_GT(o.translation_sigma_m[0], 100 * o.translation_sigma_m[1]);
   EXPECT_GT(std::abs(o.translation_axes(0, 0)), 0.99);  // the sensor looks along the street
+}
+
+/// Two scans of few lasers, the first of which is the map; little but piers tells how far the sensor went between them.
+class JointRegistrationOfFewLasers : public testing::Test {
+ protected:
+  const street::World world = street::canyon_with_piers();
+  const Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();
+  SurfelCloud scan_at(double x, unsigned seed) const { return ScanReducer(1.0).reduce(street::scan(world, street::pose(x, 0.3, 1.7, 0), street::vlp16, seed)); }
+  Eigen::Isometry3d motion_found(double x, double way_m, const std::optional<Eigen::Isometry3d>& against) const {
+    SurfelMap map;
+    map.insert(scan_at(x, 1), rest);
+    const JointTarget target{&map};
+    const PoseSearchOptions around_rest{.radius_m = 4, .yaw_rad = 0.1, .step_m = 0.5, .against = against};
+    return JointRegistration().search(scan_at(x + way_m, 2), {&target, 1}, rest, around_rest).front().match.T_map_scan;
+  }
+};
+
+TEST_F(JointRegistrationOfFewLasers, FindsAMotionByWhatSpeaksForItRatherThanForRest) {
+  for (const auto& [x, way_m] : {std::pair(0.0, 1.0), {10.0, 1.5}, {10.0, 2.0}, {0.0, 2.0}, {55.0, 2.5}})
+    EXPECT_LT(street::distance(motion_found(x, way_m, rest), street::pose(way_m, 0, 0, 0)), 0.03) << x << ' ' << way_m;
+}
+
+TEST_F(JointRegistrationOfFewLasers, FindsThatASensorStoodStill) {
+  for (const double x : {0.0, 10.0, 55.0}) EXPECT_LT(street::distance(motion_found(x, 0, rest), rest), 0.005) << x;
+}
+
+/// What fits anywhere along the street outvotes the piers where all count alike.
+TEST_F(JointRegistrationOfFewLasers, HowManySurfelsFitDoesNotTellAMotion) {
+  for (const double x : {0.0, 10.0}) EXPECT_GT(street::distance(motion_found(x, 2, std::nullopt), street::pose(2, 0, 0, 0)), 0.5) << x;
+}
+
+/// Surfels of a street along x and the planes that they meet, one a voxel. Thousands lie along it, on planes known to a degree, and fit exactly where the sensor is thought to be, 8 cm short;
+/// `num_crosswise` tell better, and scatter; a share of them has been moved by 0.4 m since.
+struct StreetOfSurfels {
+  PointCloud planes;
+  SurfelCloud scan;   // taken at T_map_scan
+  const Eigen::Isometry3d T_map_scan = street::pose(0.08, 0, 0, 0);
+  std::mt19937 random{1};
+
+  void add(const Eigen::Vector3d& p, const Eigen::Vector3d& normal, const Eigen::Vector3d& p_scan) {
+    planes.xyz.push_back(p.cast<float>());
+    planes.normal.push_back(normal.normalized().cast<float>());
+    planes.sigma_m.push_back(0);
+    scan.surfels.push_back({.mean = p_scan.cast<float>(), .count = 100});
+  }
+  StreetOfSurfels(int num_crosswise, double scatter_m, double share_moved = 0) {
+    std::normal_distribution<double> tilt(0, 0.02);
+    for (int x = -50; x < 50; ++x)
+      for (int i = 0; i < 20; ++i) {
+        const Eigen::Vector3d ground(x + 0.5, i - 9.5, -1.5), wall(x + 0.5, i % 2 ? 10.5 : -10.5, i / 2 + 0.5);
+        add(ground, {tilt(random), 0, 1}, ground);
+        add(wall, {tilt(random), 1, 0}, wall);
+      }
+    for (int i = 0; i < num_crosswise; ++i) {
+      const Eigen::Vector3d p(3 * (i % 30) - 44.5, i % 2 ? 8.5 : -8.5, i / 30 + 1.5);
+      const double off_m = i < share_moved * num_crosswise ? 0.4 : scatter_m * (2 * (i * 7 % num_crosswise + 0.5) / num_crosswise - 1);
+      add(p, Eigen::Vector3d::UnitX(), T_map_scan.inverse() * p + off_m * Eigen::Vector3d::UnitX());
+    }
+    scan.around.resize(scan.size());   // as of few lasers
+  }
+  /// How far along the street a registration errs that begins where all but the crosswise surfels fit exactly.
+  double error_m() const {
+    SurfelMap map;
+    map.insert(planes);
+    const JointTarget target{&map};
+    const JointResult result = JointRegistration().align(scan, {&target, 1}, Eigen::Isometry3d::Identity());
+    EXPECT_TRUE(result.converged);
+    return (result.T_map_scan.translation() - T_map_scan.translation()).x();
+  }
+};
+
+TEST(JointRegistrationAlongAStreet, TheFewThatTellOfItAreNoOutliersAmongTheManyThatDoNot) {
+  for (const double scatter_m : {0.05, 0.1, 0.15}) EXPECT_LT(std::abs(StreetOfSurfels(30, scatter_m).error_m()), 0.01) << scatter_m;
+}
+
+/// Walls seen slantwise by few columns of points are no poles: those would travel with the sensor.
+TEST(JointRegistrationAlongAStreet, AScanOfFewColumnsStaysWhereItIs) {
+  const street::World world = street::canyon_with_piers();
+  const auto scan_at = [&](double x, unsigned seed) { return ScanReducer(1.0).reduce(street::scan(world, street::pose(x, 0.3, 1.7, 0), street::Laser{}, seed)); };
+  for (const double x : {0.0, 10.0, 30.0})
+    for (const double way_m : {0.5, 1.0, 1.4}) {
+      SurfelMap map;
+      map.insert(scan_at(x, 1), Eigen::Isometry3d::Identity());
+      const JointTarget target{&map};
+      const Eigen::Isometry3d truth = street::pose(way_m, 0, 0, 0);
+      EXPECT_LT(street::distance(JointRegistration().align(scan_at(x + way_m, 2), {&target, 1}, truth).T_map_scan, truth), 0.03) << x << ' ' << way_m;
+    }
+}
+
+TEST(JointRegistrationAlongAStreet, WhereMostOfThemAgreeTheRestAreOutliers) {
+  for (const double share_moved : {0.1, 0.3}) EXPECT_LT(std::abs(StreetOfSurfels(60, 0.02, share_moved).error_m()), 0.005) << share_moved;
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <random>
 #include <tuple>
 
+#include "street.hpp"
+
 using namespace priormap;
 
 namespace {
@@ -91,6 +93,63 @@ TEST(ScanReducer, LeavesOutWhatHasNoPlace) {
   EXPECT_EQ(surfels.surfels[0].count, 2.0f);
   EXPECT_TRUE(ScanReducer(1.0).reduce({}).empty());
   EXPECT_THROW(ScanReducer(0), UsageError);
+}
+
+SurfelCloud reduced(const street::World& world, const street::Laser& laser) {
+  return ScanReducer(1.0).reduce(street::scan(world, street::pose(0, 0, 1.7, 0), laser, 1));
+}
+
+/// One wall, 30 m away, turned by `yaw` from facing the sensor.
+street::World wall_ahead(double yaw) {
+  const Eigen::Vector3d along(-std::sin(yaw), std::cos(yaw), 0);
+  street::World world;
+  world.faces.push_back({Eigen::Vector3d(30, 0, -10) + 15 * along, -30 * along, {0, 0, 20}});
+  return world;
+}
+
+TEST(ScanReducer, TracesOnAWallTellItsNormalByThoseAroundThem) {
+  for (const double yaw : {0.0, 0.4, -0.7}) {
+    const SurfelCloud scan = reduced(wall_ahead(yaw), street::vlp16);
+    ASSERT_EQ(scan.around.size(), scan.size());
+    std::size_t told = 0;
+    for (const SurfelShape& shape : scan.around) {
+      if (shape.tells_nothing()) continue;
+      ++told;
+      EXPECT_EQ(shape.isotropic, 0);
+      EXPECT_EQ(shape.directed, 1);
+      EXPECT_GT(std::abs(shape.normal.dot(Eigen::Vector3d(std::cos(yaw), std::sin(yaw), 0).cast<float>())), std::cos(0.05));
+      EXPECT_LT(shape.sigma_m, 0.05f);
+    }
+    EXPECT_GT(told, scan.size() * 9 / 10) << yaw;
+  }
+}
+
+TEST(ScanReducer, RingsOnLevelGroundTellNothing) {
+  street::World world;
+  world.add_ground(-100, -100, 100, 100);
+  const SurfelCloud scan = reduced(world, street::vlp16);
+  ASSERT_EQ(scan.around.size(), scan.size());
+  for (const SurfelShape& shape : scan.around) EXPECT_TRUE(shape.tells_nothing());
+}
+
+TEST(ScanReducer, TracesOnAPoleTellThatItStandsThere) {
+  for (const double range_m : {10.0, 20.0}) {
+    street::World world;
+    world.add_box(range_m, 0, 0.2, 0.2, 6, 0.3);
+    const SurfelCloud scan = reduced(world, street::vlp16);
+    ASSERT_FALSE(scan.empty());
+    ASSERT_EQ(scan.around.size(), scan.size());
+    for (const SurfelShape& shape : scan.around) {
+      EXPECT_EQ(shape.isotropic, 1);
+      EXPECT_EQ(shape.directed, -1);
+      EXPECT_GT(std::abs(shape.normal.z()), 0.99f);
+      EXPECT_LT(shape.sigma_m, 0.1f);
+    }
+  }
+}
+
+TEST(ScanReducer, SurfelsOfManyLasersTellThemselves) {
+  EXPECT_TRUE(reduced(street::canyon_with_piers(), {.columns = 2000}).around.empty());
 }
 
 }  // namespace

@@ -77,6 +77,15 @@ inline World canyon() {
   return world;
 }
 
+/// The same with some piers before the walls, at uneven distances: they alone tell where along it one is.
+inline World canyon_with_piers() {
+  World world = canyon();
+  const double at[] = {-93, -71, -58, -33, -19, 4, 23, 47, 61, 88, 101, 127, 146, 163, 190, 204};
+  int i = 0;
+  for (const double x : at) world.add_box(x, ++i % 2 ? 9.2 : -9.2, 1.5, 1.6, 5, 0);
+  return world;
+}
+
 /// Points every `spacing_m` on all faces, with normals and `sigma_m`: a prior.
 inline PointCloud sample(const World& world, double spacing_m, float sigma_m) {
   PointCloud cloud;
@@ -103,6 +112,9 @@ struct Laser {
 
 /// A HDL-32: so many points a ring that the rings are lines.
 constexpr Laser hdl32{.rings = 32, .columns = 2100, .lowest_rad = -0.535, .highest_rad = 0.186, .noise_m = 0.015};
+
+/// A VLP-16: two degrees between its lasers.
+constexpr Laser vlp16{.rings = 16, .columns = 1800, .lowest_rad = -0.262, .highest_rad = 0.262};
 
 /// One scan in the sensor's frame.
 inline PointCloud scan(const World& world, const Eigen::Isometry3d& T_map_sensor, const Laser& laser, unsigned seed) {

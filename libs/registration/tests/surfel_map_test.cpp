@@ -139,7 +139,7 @@ TEST(SurfelMap, TracesOfOneLaserThatFollowItsRayAreNoPlane) {
   const Eigen::Vector3f p(10, 0.5f, 2.3f);
   const auto shape_of_both = [&](const Eigen::Vector3f& second) {
     SurfelMap map;
-    for (const Eigen::Vector3f& one : {p, second}) map.insert(SurfelCloud{Eigen::Vector3d::Zero(), {trace_at(one)}}, Eigen::Isometry3d::Identity());
+    for (const Eigen::Vector3f& one : {p, second}) map.insert(SurfelCloud{Eigen::Vector3d::Zero(), {trace_at(one)}, {}}, Eigen::Isometry3d::Identity());
     return map.nearest(p.cast<double>())->shape;
   };
   EXPECT_EQ(shape_of_both(p).directed, 0) << "one line";
@@ -147,6 +147,41 @@ TEST(SurfelMap, TracesOfOneLaserThatFollowItsRayAreNoPlane) {
   const SurfelShape wall = shape_of_both(p + Eigen::Vector3f(0, 0, 0.4f));
   EXPECT_EQ(wall.directed, 1);
   EXPECT_GT(std::abs(wall.normal.x()), 0.99f);
+}
+
+/// A trace that lies on the wall of one scan and was seen to belong to it.
+TEST(SurfelMap, WhereASurfelTellsNothingWhatLiesAroundItDoes) {
+  const Eigen::Vector3f p(10, 0.5f, 2.3f);
+  const SurfelShape wall{Eigen::Vector3f::UnitX(), 0, 1, 0.03f};
+  const Eigen::Isometry3d T = street::pose(100, -50, 0, M_PI / 2);
+  SurfelMap map;
+  map.insert(SurfelCloud{Eigen::Vector3d::Zero(), {trace_at(p)}, {wall}}, T);
+  const SurfelShape told = map.nearest(T * p.cast<double>())->shape;
+  EXPECT_EQ(told.directed, 1);
+  EXPECT_EQ(told.isotropic, 0);
+  EXPECT_EQ(told.sigma_m, 0.03f);
+  EXPECT_LT((told.normal - Eigen::Vector3f::UnitY()).norm(), 1e-6f) << "in the axes of the map";
+
+  map.insert(SurfelCloud{Eigen::Vector3d::Zero(), {trace_at(p)}, {SurfelShape{}}}, T);
+  EXPECT_EQ(map.nearest(T * p.cast<double>())->shape.directed, 1) << "a scan that cannot tell takes nothing back";
+
+  const Surfel above = trace_at(p + Eigen::Vector3f(0, 0, 0.4f));   // two traces: a plane by themselves
+  map.insert(SurfelCloud{Eigen::Vector3d::Zero(), {above}, {SurfelShape{Eigen::Vector3f::UnitZ(), 0, 1, 0.03f}}}, T);
+  EXPECT_GT(std::abs(map.nearest(T * p.cast<double>())->shape.normal.y()), 0.99f);
+}
+
+TEST(SurfelMap, NearTheConeTracesMustLieFarApartToMakeAPlane) {
+  const Eigen::Vector3f p(10, 0.5f, 2.3f), along = Eigen::Vector3f::UnitY();
+  const auto shape_of_both = [&](float apart_m, float off_cone_rad) {
+    const Eigen::Vector3f second = p + apart_m * (Eigen::AngleAxisf(off_cone_rad, along) * p.normalized());
+    SurfelMap map;
+    for (const Eigen::Vector3f& one : {p, second}) map.insert(SurfelCloud{Eigen::Vector3d::Zero(), {trace_at(one)}, {}}, Eigen::Isometry3d::Identity());
+    return map.nearest(p.cast<double>())->shape;
+  };
+  EXPECT_EQ(shape_of_both(0.3f, 0.2f).directed, 0) << "11 degrees off the cone, spread 0.15 m";
+  EXPECT_EQ(shape_of_both(0.6f, 0.2f).directed, 1) << "spread 0.3 m";
+  EXPECT_EQ(shape_of_both(0.6f, 0.04f).directed, 0) << "in the cone, however wide";
+  EXPECT_EQ(shape_of_both(0.3f, 0.6f).directed, 1) << "far from the cone";
 }
 
 TEST(SurfelMap, ForgetsBlocksThatAreFarAndKeepsTheRest) {
@@ -174,7 +209,9 @@ TEST(SurfelMap, ACopyThroughItsStateGoesOnAlike) {
   const auto drive_on = [&](SurfelMap& map, int first, int last) {
     for (int k = first; k < last; ++k) {
       const Eigen::Isometry3d T = street::pose(8.0 * k, 0.3 * k, 1.8, 0.03 * k);
-      map.insert(reducer.reduce(street::scan(world, T, {.columns = 300}, unsigned(k))), T);
+      const SurfelCloud scan = reducer.reduce(street::scan(world, T, {.rings = 16, .columns = 300}, unsigned(k)));
+      ASSERT_FALSE(scan.around.empty());
+      map.insert(scan, T);
       map.remove_beyond(T.translation(), 40);
     }
   };
@@ -197,6 +234,7 @@ TEST(SurfelMap, ACopyThroughItsStateGoesOnAlike) {
     ASSERT_EQ(a.has_value(), b.has_value());
     if (!a) continue;
     EXPECT_EQ(a->mean, b->mean);
+    EXPECT_EQ(a->shape.normal, b->shape.normal);
     EXPECT_EQ(a->shape.sigma_m, b->shape.sigma_m);
     EXPECT_EQ(a->second_distance_m, b->second_distance_m);
   }

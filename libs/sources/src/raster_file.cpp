@@ -116,7 +116,7 @@ class ImpossibleCells {
 
   ImpossibleHeights found(bool is_float32) const {
     const std::lock_guard lock(mutex_);
-    return {cells_.size(), lowest_, highest_, is_float32};
+    return {cells_.size(), !cells_.is_complete(), lowest_, highest_, is_float32};
   }
 
  private:

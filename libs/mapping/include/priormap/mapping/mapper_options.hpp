@@ -75,7 +75,7 @@ struct TrackingOptions {
   void describe(Visitor& visit) {
     visit("prior-voxel", prior.voxel_m, {"edge of the voxels of the prior", "m", 0.05, 10});
     visit("keyframe", keyframe_m, {"way between scans that are matched to the prior where it holds the drive", "m", 0, 100});
-    visit("search-step", search_step_m, {"the same at the start and where the prior does not hold it", "m", 0, 100});
+    visit("search-step", search_step_m, {"the same at the start and where the prior does not hold it", "m", 0.1, 100});
     visit("start-keyframes", start_keyframes, {"keyframes by which other places near the given start are compared with it; 0: it is trusted", "", 0, 1000});
     visit("start-radius", search.radius_m, {"distance from the given start up to which it may lie", "m", 0, 100});
     visit("start-angle", search.yaw_rad, {"angle from the given direction up to which it may be turned", "rad", 0, 3.2});
@@ -174,7 +174,7 @@ struct MapperOptions {
   template <class Visitor>
   void describe(Visitor& visit) {
     std::visit([&](auto& options) { options.describe(visit); }, method);
-    visit("prior-radius", prior_radius_m, {"the prior is held within", "m", 1, 10000});
+    visit("prior-radius", prior_radius_m, {"the prior is held within while the drive is followed; the estimate of the whole drive holds it within piece-range and 45 m", "m", 1, 10000});
   }
 };
 

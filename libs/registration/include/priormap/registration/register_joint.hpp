@@ -51,6 +51,9 @@ struct PoseSearchOptions {
   double sigma_m = 0.3;      ///< of the residuals while starts are compared
   int surfels = 400;         ///< of the scan, for comparing starts
   int refined = 8;           ///< best starts that are registered
+  /// Poses are ranked by what speaks for them rather than for this one: how surfels fit counts by how much the two poses move them along the normals of the planes that they lie near. Most
+  /// of a street, and all rings of a lidar on level ground, fit anywhere along it.
+  std::optional<Eigen::Isometry3d> against = std::nullopt;
 };
 
 /// What is known of the pose beforehand; `information` with the tangent of `retract` at T.
@@ -122,6 +125,7 @@ class JointRegistration {
  private:
   struct Workspace;
   double score(const Eigen::Isometry3d& T_map_scan);
+  double gain(const Eigen::Isometry3d& T_map_scan, const Eigen::Isometry3d& against);
   JointOptions options_;
   std::unique_ptr<Workspace> workspace_;
 };

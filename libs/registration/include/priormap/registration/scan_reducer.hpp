@@ -24,6 +24,8 @@ class ScanReducer {
   Cell& cell_of(std::uint64_t key);
   std::size_t slot_of(std::uint64_t key) const;
   void grow();
+  void tell_from_around(SurfelCloud& scan) const;
+  Surfel merged_around(std::size_t i, const SurfelCloud& scan) const;
   template <bool timed>
   void add(const float* xyz, const float* time_s, std::size_t count);
 

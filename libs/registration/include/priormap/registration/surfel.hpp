@@ -12,6 +12,16 @@ struct Surfel {
   Eigen::Matrix<float, 6, 1> covariance = Eigen::Matrix<float, 6, 1>::Zero();  ///< of the points: xx, xy, xz, yy, yz, zz [m^2]
 };
 
+/// What a surfel of the map says about a point of surface near it: with r the vector from `mean` to the point, its squared distance is
+/// (isotropic |r|^2 + directed (normal . r)^2) / sigma^2.   plane: 0, 1.   line along `normal`: 1, -1.   scatter: 1, 0.   no use: 0, 0.
+struct SurfelShape {
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  float isotropic = 0;
+  float directed = 0;
+  float sigma_m = 0;
+  bool tells_nothing() const { return isotropic == 0 && directed == 0; }
+};
+
 /// Moments of the union of the points of both.
 void merge(Surfel& into, const Surfel& from);
 
@@ -22,6 +32,8 @@ Eigen::Vector3f normal_of(const Surfel& surfel, double voxel_m);
 struct SurfelCloud {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Surfel> surfels;
+  /// Of the surface that each lies on, by the points around it, where its own do not tell: a sensor of few lasers draws single traces, but several within some metres. As many; empty where enough surfels tell for themselves.
+  std::vector<SurfelShape> around;
 
   std::size_t size() const { return surfels.size(); }
   bool empty() const { return surfels.empty(); }

@@ -21,15 +21,6 @@ struct SurfelMapOptions {
   double max_count = 1000;         ///< a surfel of so many points is left as it is
 };
 
-/// What a surfel of the map says about a point of surface near it: with r the vector from `mean` to the point, its squared distance is
-/// (isotropic |r|^2 + directed (normal . r)^2) / sigma^2.   plane: 0, 1.   line along `normal`: 1, -1.   scatter: 1, 0.   no use: 0, 0.
-struct SurfelShape {
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
-  float isotropic = 0;
-  float directed = 0;
-  float sigma_m = 0;
-};
-
 /// A target of `register_joint`: surfels in voxels, in blocks of 8 x 8 x 8 voxels with a dense index each, positions as structure of arrays relative to the block's
 /// corner (float32 is exact to micrometres there, anywhere in a frame of 2^31 voxels).
 /// Points with normals (a prior) make one surfel for each plane of a feature in a voxel; points without, and scans, one surfel a voxel from the moments of all that fell in.

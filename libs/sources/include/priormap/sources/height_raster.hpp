@@ -23,6 +23,7 @@ struct RasterFacts {
 /// They count as cells without data.
 struct ImpossibleHeights {
   std::uint64_t cells = 0;          ///< how many there are, each counted once, among those that were read
+  bool are_more = false;            ///< than that: they are scattered, and memory is bounded
   double lowest = 0, highest = 0;   ///< of their values, as the file holds them
   bool is_float32 = false;          ///< it holds them in single precision
 };
