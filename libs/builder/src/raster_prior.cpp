@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <future>
 #include <iomanip>
 #include <memory>
 #include <mutex>
@@ -55,13 +56,18 @@ bool overlap(const Bounds2& a, const Bounds2& b) { return a.min_x < b.max_x && b
 
 /// Each content once, the preferred first: finer cells, then the lower hash.
 std::vector<RasterInput> read_inputs(const std::vector<fs::path>& files, const PriorOptions& options, int threads, const Events& events) {
+  std::vector<std::string> hashes(files.size());
+  auto hashing = std::async(threads > 1 ? std::launch::async : std::launch::deferred, [&] {   // while GDAL and PROJ start up
+    parallel_for(files.size(), threads, [&](std::size_t i) { hashes[i] = content_hash(files[i]); });
+  });
   std::vector<RasterInput> inputs;
   for (const fs::path& file : files) {
     RasterFacts facts = read_raster_facts(file);
     InputCrs crs = resolve_input_crs(options, facts.crs, file.string(), events);
     inputs.push_back({file, "", std::move(facts), std::move(crs)});
   }
-  parallel_for(inputs.size(), threads, [&](std::size_t i) { inputs[i].sha256 = content_hash(inputs[i].file); });
+  hashing.get();
+  for (std::size_t i = 0; i < inputs.size(); ++i) inputs[i].sha256 = std::move(hashes[i]);
   const auto cell_m = [](const RasterInput& input) {
     constexpr double metres_per_degree = 111320;
     return std::sqrt(input.facts.cell_x * input.facts.cell_y) * (input.crs.crs.is_geographic() ? metres_per_degree : input.crs.crs.horizontal_unit_m());
