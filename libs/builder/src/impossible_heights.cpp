@@ -25,7 +25,7 @@ std::string text_of(const std::filesystem::path& file, const ImpossibleHeights& 
   const bool is_one_value = found.lowest == found.highest;
   const std::string lowest = digits_of(found.lowest, found), highest = digits_of(found.highest, found);
   std::ostringstream text;
-  text << file.string() << ": " << (found.are_more ? "at least " : "") << found.cells << " of the cells read hold ";
+  text << file.string() << ": " << (found.are_more ? "millions" : std::to_string(found.cells)) << " of the cells read hold ";   // where not all were counted, how many depends on the order
   if (is_one_value)
     text << lowest << ", which is no height on Earth; they are left out. If it means no data, let the file say so: gdal_translate -a_nodata " << lowest << " FILE NEW.tif";
   else

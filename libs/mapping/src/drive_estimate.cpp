@@ -10,6 +10,7 @@
 #include <priormap/core/process.hpp>
 #include <priormap/core/reused.hpp>
 
+#include "common_shift.hpp"
 #include "confidence.hpp"
 #include "prior_pieces.hpp"
 #include "prior_surfels.hpp"
@@ -91,6 +92,17 @@ class PriorComparison {
     });
   }
 
+  /// By how much a scan within `together_m` of there fits the walls that belong to no feature better at each of the shifts. Outlines err each in its own way, and have their votes.
+  std::vector<double> improvements(const SurfelCloud& surfels, const Eigen::Isometry3d& T_map_sensor) {
+    constexpr double sigma_m = 0.2;
+    std::vector<Eigen::Isometry3d> poses;
+    for (const Eigen::Vector2d& shift_m : ShiftScores::shifts()) poses.push_back(Eigen::Translation3d(shift_m.x(), shift_m.y(), 0) * T_map_sensor);
+    return registrations_.with_one([&](JointRegistration& registration) {
+      const auto targets = window_.map().targets(0.0, PriorSurfels::unweighted);
+      return registration.improvements(surfels, std::span(targets).subspan(PriorSurfels::of_the_rest, 1), T_map_sensor, poses, sigma_m);
+    });
+  }
+
   double stated_building_sigma_m() const { return window_.map().stated_sigma_m(PriorSurfels::of_features); }
 
  private:
@@ -136,6 +148,23 @@ class DriveGraph {
       groups.back().push_back(k);
     }
     return groups;
+  }
+
+  /// Poses that are located, in order, some hundred metres of way without a gap in the odometry.
+  std::vector<std::vector<std::size_t>> stretches() const {
+    constexpr double longest_m = 300;
+    std::vector<std::vector<std::size_t>> found;
+    double way_m = 0;
+    for (std::size_t k = 0; k < size(); ++k) {
+      if (k > 0) way_m += (poses_[k].translation() - poses_[k - 1].translation()).norm();
+      if (!is_located(k)) continue;
+      if (found.empty() || way_m > longest_m || record(k).odometry.began_anew) found.emplace_back(), way_m = 0;
+      found.back().push_back(k);
+    }
+    return found;
+  }
+  void shift(const std::vector<std::size_t>& keys, const Eigen::Vector2d& shift_m) {
+    for (const std::size_t k : keys) poses_[k].translation().head<2>() += shift_m;
   }
 
   /// @return the marginals at the new poses
@@ -237,6 +266,21 @@ class DriveGraph {
   Eigen::Isometry3d T_map_start_;
 };
 
+/// Where the scans of a stretch, all together, fit clearly better.
+std::optional<Eigen::Vector2d> common_shift(const DriveGraph& graph, const std::vector<std::size_t>& stretch, PriorComparison& comparison, ScansAgain& scans) {
+  constexpr std::size_t least_scans = 8, most_scans = 20;
+  const std::size_t count = std::min(stretch.size(), most_scans);
+  if (count < least_scans) return std::nullopt;
+  ShiftScores scores;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t k = stretch[i * stretch.size() / count];
+    comparison.move_to(graph.pose(k).translation());
+    const auto surfels = scans.surfels_of(k, graph.record(k));
+    scores.add(i, count, comparison.improvements(*surfels, graph.pose(k)), surfels->size());
+  }
+  return scores.clear();
+}
+
 }  // namespace
 
 std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const std::optional<NearTiles>& prior, const ReadScan& read_again,
@@ -248,7 +292,8 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
   DriveGraph graph(records, how);
   LengthsByKind expected_outset_m{};
   if (prior && prior->points().identity().sees_roofs) expected_outset_m[PieceKind::wall] = how.roof_overhang_m;
-  PiecesOfPrior pieces(how.piece_m, how.range_m, expected_outset_m, options.reduce_m);
+  const PiecesOfPrior unknown(how.piece_m, how.range_m, expected_outset_m, options.reduce_m);
+  PiecesOfPrior pieces = unknown;
   const PieceSigmas stated = {{how.building_sigma_m, how.wall_sigma_m, how.slope_sigma_m, how.ground_sigma_m}};
   PieceSigmas sigmas = stated;
   Marginals marginals;
@@ -267,12 +312,22 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
     }
     return comparison.stated_building_sigma_m();
   };
-  if (prior) {
+  const auto move_stretches = [&] {
+    bool any = false;
+    PriorComparison comparison(*prior, pieces, options);
+    for (const std::vector<std::size_t>& stretch : graph.stretches())
+      if (const auto shift_m = common_shift(graph, stretch, comparison, scans)) graph.shift(stretch, *shift_m), any = true;
+    return any;
+  };
+  const auto vote = [&] {
+    pieces = unknown;
+    sigmas = stated;
     const double building_sigma_m = compare([&](std::size_t k, const Eigen::Isometry3d& T, const std::vector<PlaneMatch>& matches) { pieces.vote(k, T, matches); });
     sigmas[PieceKind::building] = std::max(how.building_sigma_m, building_sigma_m);
     pieces.take_likeliest_offsets();
-  }
-  for (int pass = 0; pass < (prior ? how.passes : 1); ++pass) {
+  };
+  const int passes = prior ? how.passes : 1;
+  const auto estimate = [&](int pass) {
     if (prior) {
       pieces.clear_matches();
       // Coarse to fine: until height and tilt are known, what strays is not yet an outlier.
@@ -280,11 +335,24 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
       const PieceNoise noise{how.surface_sigma_m, how.ground_surface_sigma_m, coarse * how.kernel_width, coarse * how.ground_kernel_width, how.turn_sigma_rad};
       compare([&](std::size_t k, const Eigen::Isometry3d& T, const std::vector<PlaneMatch>& matches) { pieces.add(k, T, matches, noise); });
     }
-    const bool last = !prior || pass + 1 == how.passes;
+    const bool last = pass + 1 == passes;
     constexpr double least_gain = 1e-6, least_gain_before = 1e-4;   // what comes before the last pass is compared anew
     marginals = graph.estimate(pieces, sigmas, prior.has_value(), last ? least_gain : least_gain_before, weights);
     if (!last) sigmas = pieces.estimated_sigmas(stated, sigmas, marginals.pieces, weights);
+  };
+  if (prior) {
+    constexpr int most_moves = 1;
+    move_stretches();
+    vote();
+    estimate(0);
+    for (int moves = 0; moves < most_moves && move_stretches(); ++moves) {
+      vote();
+      estimate(0);
+    }
+  } else {
+    estimate(0);
   }
+  for (int pass = 1; pass < passes; ++pass) estimate(pass);
   const std::vector<bool> held = pieces.held(graph.size());
   graph.add_common(pieces.common_variance(sigmas, {how.common_share, how.wall_common_share, how.ground_common_share}), held, marginals.poses);
   if (known_height_m && held.front()) graph.doubt_heights(*known_height_m, marginals.poses);

@@ -57,11 +57,12 @@ void UsualFit::take(const MatchFigures& match) {
 Odometry::Odometry(const OdometryOptions& options, const Vector6d& first_velocity)
     : options_(options), registration_(options.registration), local_map_(options.local_map), T_odom_last_(Eigen::Isometry3d::Identity()), velocity_(first_velocity) {}
 
-/// Stamps that stand still say nothing.
+/// Stamps that stand still or go back say nothing; nor does by how much the middles of two such sweeps differ.
 double Odometry::time_since_last(double middle_s) const {
   constexpr double usual_s = 0.1;
   const double duration_s = middle_s - middle_last_s_;
-  return duration_s > 0 ? duration_s : usual_s;
+  if (stamp_goes_on_ && duration_s > 0) return duration_s;
+  return usual_period_s_ > 0 ? usual_period_s_ : usual_s;
 }
 
 /// No vehicle changes its speed much faster: where the street binds nothing, as in a tunnel, it goes on as before; but no motion stays steady for long.
@@ -175,6 +176,7 @@ void Odometry::get_lost(const Eigen::Isometry3d& guess, double middle_s) {
 
 /// While lost. A gap in the recording, perhaps: the old street may never come back.
 OdometryStep Odometry::followed_apart(SurfelCloud scan, double middle_s) {
+  apart_->stamp_goes_on_ = stamp_goes_on_;
   OdometryStep found = apart_->step_in_middle(scan, middle_s);
   if (apart_->apart_) {   // lost there as well: what came since then counts
     num_to_give_up_ = std::min(num_to_give_up_, apart_->num_to_give_up_ + 1);
@@ -195,9 +197,10 @@ OdometryStep Odometry::followed_apart(SurfelCloud scan, double middle_s) {
 OdometryStep Odometry::step(SurfelCloud& scan, double stamp_s) {
   const double middle_s = mean_time_s(scan);
   count_times_from(scan, middle_s);
-  const bool goes_on = stamp_s > std::exchange(stamp_last_s_, stamp_s);   // else the middles of two sweeps differ by chance
+  constexpr double least_period_s = 1e-3;
+  stamp_goes_on_ = stamp_s - std::exchange(stamp_last_s_, stamp_s) >= least_period_s;
   if (local_map_.empty()) T_odom_last_ = moved_on(T_odom_last_, velocity_, middle_s);   // `odom` lies at the first stamp
-  OdometryStep found = step_in_middle(scan, goes_on ? stamp_s + middle_s : stamp_s);
+  OdometryStep found = step_in_middle(scan, stamp_s + middle_s);
   if (middle_s == 0) return found;
   found.middle_s = middle_s;
   const Eigen::Isometry3d T_middle = found.T_odom_sensor;
@@ -236,7 +239,7 @@ OdometryStep Odometry::step_in_middle(SurfelCloud& scan, double middle_s) {
     if (!found.joined) return followed_apart(raw, middle_s);
     fits_.take(found.figures);
     if (!beyond_gap && num_lost_ == 0) {
-      usual_period_s_ = middle_s - middle_last_s_;
+      usual_period_s_ = duration_s;
       velocity_ = steady_velocity(T_odom_last_, found.T_odom_sensor, duration_s);
     }
     num_lost_ = 0;

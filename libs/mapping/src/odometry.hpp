@@ -74,6 +74,7 @@ class Odometry {
   SurfelMap local_map_;
   Eigen::Isometry3d T_odom_last_;   // in the middle of the last scan that was matched,
   double stamp_last_s_ = -std::numeric_limits<double>::infinity();
+  bool stamp_goes_on_ = true;       // from the scan before to the one that is matched
   double middle_last_s_ = 0;
   Vector6d velocity_;               // and there
   double usual_period_s_ = 0;   // of the scan before

@@ -17,12 +17,13 @@ class ScansAgain {
  public:
   /// @param read  must outlive this
   ScansAgain(const ReadScan& read, double reduce_m, std::size_t num_keyframes, std::size_t room_bytes)
-      : read_(read), reducers_([reduce_m] { return ScanReducer(reduce_m); }), room_bytes_(room_bytes), kept_(num_keyframes) {}
+      : read_(read), reduce_m_(reduce_m), reducers_([reduce_m] { return ScanReducer(reduce_m); }), room_bytes_(room_bytes), kept_(num_keyframes) {}
 
   std::shared_ptr<const SurfelCloud> surfels_of(std::size_t keyframe, const ScanRecord& record);
 
  private:
   const ReadScan& read_;
+  double reduce_m_;
   Reused<ScanReducer> reducers_;
   std::mutex mutex_;
   std::size_t room_bytes_;

@@ -47,5 +47,14 @@ TEST(MotionAtStart, OfSixteenLasersIsFoundFromRest) {
   }
 }
 
+/// Level ground fits level ground anywhere.
+TEST(MotionAtStart, WhereNothingTellsOfOneIsRest) {
+  const auto way_m = [](double t_s) { return 5 * t_s; };
+  street::World field;
+  field.add_ground(-100, -100, 100, 100);
+  for (const street::Laser& laser : {street::vlp16, street::hdl32, street::Laser{}})
+    EXPECT_LT(street::distance(motion_at_start(test::ScansOfStreet(field, laser, 3, way_m), 0, 3), Eigen::Isometry3d::Identity()), 0.03);
+}
+
 }  // namespace
 }  // namespace priormap

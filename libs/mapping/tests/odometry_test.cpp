@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include <cmath>
 
 #include <priormap/mapping/motion.hpp>
@@ -73,7 +75,42 @@ TEST(Odometry, OfSixteenLasersFollowsACarThatIsAtSpeedInAStreetOfWalls) {
     EXPECT_NEAR(share_driven(test::ScansOfStreet(street::canyon_with_piers(), street::vlp16, 20, [&](double t_s) { return first_x + 14 * t_s; })), 1, 0.01) << first_x;
 }
 
-/// Into a turn and to a stop, the stamps at the sweeps' beginnings.
+/// A sweep of 0.1 s, clockwise, as a moving sensor sees it. @param first_time_s  of its points, from the stamp
+PointCloud sweep_of(const street::World& world, const std::function<Eigen::Isometry3d(double t_s)>& truth, double stamp_s, unsigned seed, double first_time_s = 0) {
+  const double middle_s = first_time_s + 0.05;
+  const Eigen::Isometry3d middle = truth(stamp_s + middle_s);
+  PointCloud sweep = street::scan(world, middle, {.rings = 32, .columns = 500}, seed);
+  for (Eigen::Vector3f& p : sweep.xyz) {
+    const double time_s = middle_s - 0.1 * std::atan2(static_cast<double>(p.y()), static_cast<double>(p.x())) / (2 * M_PI);
+    sweep.time_s.push_back(static_cast<float>(time_s));
+    p = (truth(stamp_s + time_s).inverse() * middle * p.cast<double>()).cast<float>();
+  }
+  return sweep;
+}
+
+/// By a clock that is put back, one that repeats itself, one that stands, and one that hardly moves.
+TEST(Odometry, StampsThatTellNoTimeTellNoMotion) {
+  const street::World world = street::town(60, 3);
+  const auto truth = [](double t_s) { return street::pose(10 * t_s, 0, 1.7, 0); };
+  const auto put_back = [](int k) { return 0.1 * k - (k >= 10 ? 5 : 0); };
+  const auto repeated = [](int k) { return 0.1 * (k - (k >= 10 ? 1 : 0)); };
+  const auto standing = [](int) { return 0.0; };
+  const auto hardly_moving = [](int k) { return 1e-9 * k; };
+  for (const std::function<double(int)>& stamp_s : std::initializer_list<std::function<double(int)>>{put_back, repeated, standing, hardly_moving})
+    for (const double first_time_s : {0.0, -0.1}) {
+      ScanReducer reducer(1.0);
+      Odometry odometry({}, (Vector6d() << Eigen::Vector3d::Zero(), 10, 0, 0).finished());
+      for (int k = 0; k < 20; ++k) {
+        SurfelCloud scan = reducer.reduce(sweep_of(world, truth, 0.1 * k, static_cast<unsigned>(k), first_time_s));
+        const OdometryStep step = odometry.step(scan, stamp_s(k));
+        EXPECT_TRUE(k == 0 || step.joined) << k;
+        EXPECT_NEAR(step.velocity[3], 10, 0.5) << stamp_s(10) << ' ' << first_time_s << ' ' << k;
+        EXPECT_LT(street::distance(step.T_odom_sensor, truth(0).inverse() * truth(0.1 * k)), 0.05) << stamp_s(10) << ' ' << first_time_s << ' ' << k;
+      }
+    }
+}
+
+/// Into a turn and to a stop.
 TEST(Odometry, SweepsAreStraightInATurnAndAtAStop) {
   const street::World world = street::town(60, 3);
   const auto truth = [](double t_s) {   // 4 m/s, slowed down from 1.5 s on, to rest at 2.5 s; turning by 8 degrees a second from 0.5 s on
@@ -85,14 +122,7 @@ TEST(Odometry, SweepsAreStraightInATurnAndAtAStop) {
   Odometry odometry({}, (Vector6d() << Eigen::Vector3d::Zero(), 4, 0, 0).finished());
   for (int k = 0; k < 35; ++k) {
     const double stamp_s = 0.1 * k;
-    const Eigen::Isometry3d middle = truth(stamp_s + 0.05);
-    PointCloud sweep = street::scan(world, middle, {.rings = 32, .columns = 500}, static_cast<unsigned>(k));
-    for (Eigen::Vector3f& p : sweep.xyz) {
-      const double time_s = 0.05 - 0.1 * std::atan2(static_cast<double>(p.y()), static_cast<double>(p.x())) / (2 * M_PI);
-      sweep.time_s.push_back(static_cast<float>(time_s));
-      p = (truth(stamp_s + time_s).inverse() * middle * p.cast<double>()).cast<float>();
-    }
-    SurfelCloud scan = reducer.reduce(sweep);
+    SurfelCloud scan = reducer.reduce(sweep_of(world, truth, stamp_s, static_cast<unsigned>(k)));
     const OdometryStep step = odometry.step(scan, stamp_s);
     const Eigen::Isometry3d T = truth(0).inverse() * truth(stamp_s);
     EXPECT_LT(street::distance(step.T_odom_sensor, T), 0.1) << k;

@@ -28,13 +28,13 @@ struct Passes {
 };
 
 bool same(const SurfelCloud& a, const SurfelCloud& b) {
-  return a.origin == b.origin && std::ranges::equal(a.surfels, b.surfels, [](const Surfel& x, const Surfel& y) { return x.mean == y.mean && x.count == y.count && x.covariance == y.covariance; });
+  return a.origin == b.origin && a.normals.size() == a.size() && a.normals == b.normals && std::ranges::equal(a.surfels, b.surfels, [](const Surfel& x, const Surfel& y) { return x.mean == y.mean && x.count == y.count && x.covariance == y.covariance; });
 }
 
 TEST(ScansAgain, WhereThereIsRoomEachScanIsReadOnce) { EXPECT_EQ(Passes(std::numeric_limits<std::size_t>::max()).reads, Passes::num_keyframes); }
 
 TEST(ScansAgain, HowMuchRoomThereIsMakesNoDifferenceToTheSurfels) {
-  const Passes all(std::numeric_limits<std::size_t>::max()), none(0), one(all.clouds[0].size() * sizeof(Surfel));
+  const Passes all(std::numeric_limits<std::size_t>::max()), none(0), one(all.clouds[0].size() * (sizeof(Surfel) + sizeof(Eigen::Vector3f)));
   EXPECT_EQ(none.reads, 3 * Passes::num_keyframes);
   EXPECT_EQ(one.reads, 1 + 3 * (Passes::num_keyframes - 1));
   ASSERT_GT(all.clouds[0].size(), 100u);

@@ -22,11 +22,15 @@ struct SourceColumns {
   std::array<std::vector<float>, 10> columns;  // x y z, covariance, variance
   std::size_t count = 0;
   bool sparse = false;   // of few lasers
+  std::vector<Eigen::Vector3f> normals;   // in sensor axes, as in SurfelCloud
 
   /// Every `stride`-th surfel.
   void assign(const SurfelCloud& scan, double point_sigma_m, std::size_t stride = 1) {
     count = (scan.size() + stride - 1) / stride;
     sparse = !scan.around.empty();
+    if (!scan.normals.empty() && scan.normals.size() != scan.size()) throw Error("a scan has " + std::to_string(scan.size()) + " surfels and " + std::to_string(scan.normals.size()) + " normals");
+    normals.clear();
+    for (std::size_t i = 0; i < scan.normals.size(); i += stride) normals.push_back(scan.normals[i]);
     const std::size_t padded = (count + lanes - 1) / lanes * lanes;
     for (auto& column : columns) column.assign(padded, 0.0f);
     std::fill(columns[9].begin(), columns[9].end(), 1.0f);  // keeps the padding finite
@@ -104,28 +108,31 @@ Linearization from_sums(const kernels::Sums& sums, const Eigen::Matrix3d& R_map_
 /// One map and the correspondences with it, kept from iteration to iteration.
 class TargetState {
  public:
-  void begin(const JointTarget& target, std::size_t count, std::size_t padded, const Eigen::Isometry3d& guess) {
+  void begin(const JointTarget& target, const SourceColumns& source, const Eigen::Isometry3d& guess) {
     target_ = target;
+    const std::size_t count = source.count, padded = source.view().padded;
     weakest_.setZero();
     view_.emplace(*target.map);
     anchor_ = view_->anchor_voxel(target.T_target_map * guess.translation());
     count_ = count;
     for (auto& column : columns_) column.assign(padded, 0.0f);
     std::fill(columns_[variance].begin(), columns_[variance].end(), 1.0f);
-    gap2_.assign(padded, std::numeric_limits<float>::max());
+    gap2_.assign(padded, std::numeric_limits<float>::infinity());
     std::fill_n(gap2_.begin(), count, -1.0f);
     moved_.resize(padded + 1);
     for (auto* indices : {&block_, &entry_}) indices->resize(count);
     for (auto* squares : {&squared_, &second_squared_}) squares->resize(count);
   }
 
-  /// @param sparse  whether few surfels are planes: then the many that tell nothing of the weakest direction must not outvote the few that do
-  Linearization linearize(const kernels::Table& table, const kernels::Source& source, bool sparse, const Eigen::Isometry3d& T_map_scan,
-                          const JointOptions& options, double least_scale) {
+  /// Where few surfels are planes, the many that tell nothing of the weakest direction must not outvote the few that do.
+  /// @param settled  that direction stays what it is: where none is clearly the weakest it would change for ever
+  Linearization linearize(const kernels::Table& table, const SourceColumns& columns, const Eigen::Isometry3d& T_map_scan, const JointOptions& options, double least_scale,
+                          bool settled) {
+    const kernels::Source source = columns.view();
     const Eigen::Isometry3d T = target_.T_target_map * T_map_scan;
     const kernels::Pose pose = kernel_pose(T, view_->corner(anchor_));
     table.transform(pose, source, data(x), data(y), data(z));
-    search(table, options);
+    search(table, columns.normals, T.linear().cast<float>(), options);
     const kernels::Correspondences c = correspondences();
     table.whitened(pose, source, c, data(x), data(y), data(z), data(whitened));
     const double scale = std::max(least_scale, robust_scale()), weakest_scale = weakest_.isZero() ? scale : std::max(scale, scale_along(weakest_));
@@ -134,7 +141,7 @@ class TargetState {
     Linearization out = from_sums(sums, T.linear());
     out.doubt = std::pow(std::max(1.0, weakest_scale) / std::max(1.0, scale), 2);
     out.doubted = T.linear().transpose() * weakest_.cast<double>();
-    if (sparse) weakest_ = (T.linear() * weakest_direction(out.H)).cast<float>();
+    if (columns.sparse && !settled) weakest_ = (T.linear() * weakest_direction(out.H)).cast<float>();
     const double weight = target_.weight / std::pow(std::max(1.0, scale), 2);
     out.H *= weight;
     out.g *= weight;
@@ -160,60 +167,85 @@ class TargetState {
 
   /// Sum over the surfels that have a match: a little for one that fits, much off for one that does not. Where a scan meets the trace of another, as it does
   /// where it stood still, more find a match; that alone must not win.
-  double score(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) {
-    look_up(table, source, T_map_scan, options);
+  double score(const kernels::Table& table, const SourceColumns& columns, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) {
     constexpr double par = 0.85;
+    look_up(table, columns, T_map_scan, options);
     double sum = 0;
     for (std::size_t i = 0; i < count_; ++i)
-      if (columns_[whitened][i] >= 0) sum += fit(i, options) - par;
+      if (columns_[whitened][i] >= 0) sum += fit(columns_, i, options) - par;
     return target_.weight * sum;
   }
 
-  /// The same, each by the share of its way from `against` that its match would notice.
-  double contrast(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T_map_scan, const Eigen::Isometry3d& against, const JointOptions& options) {
-    look_up(table, source, T_map_scan, options);
+  /// Another pose, for `gain`.
+  void remember(const kernels::Table& table, const SourceColumns& columns, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) {
+    look_up(table, columns, T_map_scan, options);
+    T_remembered_ = T_map_scan;
+    remembered_ = columns_;
+  }
+
+  /// By how much upright matches fit better than at the remembered pose; what has none at one of both says nothing, or poses with few matches would win.
+  double improvement(const kernels::Table& table, const SourceColumns& columns, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) {
+    constexpr float most_level = 0.7f;
+    look_up(table, columns, T_map_scan, options);
+    const auto is_upright = [&](const Columns& c, std::size_t i) { return c[whitened][i] >= 0 && std::abs(c[normal_z][i]) < most_level; };
+    double sum = 0;
+    for (std::size_t i = 0; i < count_; ++i)
+      if (is_upright(columns_, i) && is_upright(remembered_, i)) sum += fit(columns_, i, options) - fit(remembered_, i, options);
+    return target_.weight * sum;
+  }
+
+  /// What speaks for a pose rather than for the remembered one.
+  double gain(const kernels::Table& table, const SourceColumns& columns, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) {
+    look_up(table, columns, T_map_scan, options);
+    return contrast(columns_, columns, T_map_scan, options) - contrast(remembered_, columns, T_map_scan, options);
+  }
+
+ private:
+  enum Column { x, y, z, searched_x, searched_y, searched_z, mean_x, mean_y, mean_z, normal_x, normal_y, normal_z, isotropic, directed, variance, whitened };
+  using Columns = std::array<std::vector<float>, whitened + 1>;
+
+  double fit(const Columns& c, std::size_t i, const JointOptions& options) const {
+    const double width2 = options.kernel_width * options.kernel_width;
+    return width2 / (width2 + double(c[whitened][i]));
+  }
+
+  /// The score of matches, each by the share of its way between the two poses that it would notice.
+  double contrast(const Columns& c, const SourceColumns& source, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) const {
     constexpr double par = 0.5, least_way_m = 0.1;
-    const Eigen::Matrix3f R = (target_.T_target_map.linear() * (T_map_scan.linear() - against.linear())).cast<float>();
-    const Eigen::Vector3f t = (target_.T_target_map.linear() * (T_map_scan.translation() - against.translation())).cast<float>();
+    const Eigen::Matrix3f R = (target_.T_target_map.linear() * (T_map_scan.linear() - T_remembered_.linear())).cast<float>();
+    const Eigen::Vector3f t = (target_.T_target_map.linear() * (T_map_scan.translation() - T_remembered_.translation())).cast<float>();
     double sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {
-      if (columns_[whitened][i] < 0) continue;
-      const Eigen::Vector3f way = R * Eigen::Vector3f(source.x[i], source.y[i], source.z[i]) + t;
+      if (c[whitened][i] < 0) continue;
+      const Eigen::Vector3f way = R * Eigen::Vector3f(source.columns[0][i], source.columns[1][i], source.columns[2][i]) + t;
       const float way2 = way.squaredNorm();
       if (way2 < least_way_m * least_way_m) continue;
-      sum += double(tells_of(way / std::sqrt(way2), i)) * (fit(i, options) - par);
+      sum += double(tells_of(c, way / std::sqrt(way2), i)) * (fit(c, i, options) - par);
     }
     return target_.weight * sum;
   }
 
- private:
-  double fit(std::size_t i, const JointOptions& options) const {
-    const double width2 = options.kernel_width * options.kernel_width;
-    return width2 / (width2 + double(columns_[whitened][i]));
-  }
-
   /// Residuals at a pose, correspondences searched anew.
-  void look_up(const kernels::Table& table, const kernels::Source& source, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) {
+  void look_up(const kernels::Table& table, const SourceColumns& columns, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) {
+    const kernels::Source source = columns.view();
     const Eigen::Isometry3d T = target_.T_target_map * T_map_scan;
     const kernels::Pose pose = kernel_pose(T, view_->corner(anchor_));
     table.transform(pose, source, data(x), data(y), data(z));
     std::fill_n(gap2_.begin(), count_, -1.0f);
-    search(table, options);
+    search(table, columns.normals, T.linear().cast<float>(), options);
     table.whitened(pose, source, correspondences(), data(x), data(y), data(z), data(whitened));
   }
-
-  enum Column { x, y, z, searched_x, searched_y, searched_z, mean_x, mean_y, mean_z, normal_x, normal_y, normal_z, isotropic, directed, variance, whitened };
 
   float* data(Column c) { return columns_[c].data(); }
   kernels::Correspondences correspondences() {
     return {data(mean_x), data(mean_y), data(mean_z), data(normal_x), data(normal_y), data(normal_z), data(isotropic), data(directed), data(variance)};
   }
 
-  void search(const kernels::Table& table, const JointOptions& options) {
+  void search(const kernels::Table& table, const std::vector<Eigen::Vector3f>& normals, const Eigen::Matrix3f& R, const JointOptions& options) {
     const std::size_t count = table.find_moved(data(x), data(y), data(z), data(searched_x), data(searched_y), data(searched_z), gap2_.data(), gap2_.size(), moved_.data());
     table.find_nearest(view_->kernel_view(), anchor_.data(), data(x), data(y), data(z), moved_.data(), count,
                        {block_.data(), entry_.data(), squared_.data(), second_squared_.data()});
-    for (const std::uint32_t i : std::span(moved_).first(count)) keep(i, float(options.max_distance_m));
+    for (const std::uint32_t i : std::span(moved_).first(count)) keep(i, normals.empty() ? Eigen::Vector3f::Zero() : Eigen::Vector3f(R * normals[i]), float(options.max_distance_m));
   }
 
   /// How far surfel `i` may move within the voxel that it lies in now: so far the 27 voxels around it stay the same.
@@ -238,12 +270,22 @@ class TargetState {
     return std::max(anywhere, std::min({way_within_voxel(i), 0.5f * (second - first), max_distance_m - first}));
   }
 
-  void keep(std::uint32_t i, float max_distance_m) {
+  /// Of ground and wall, what belongs to the one is not compared with the other: the traces of few lasers on a wall, above the ground, would pull that up to them. Walls that face
+  /// otherwise are: a prior that is wrong must be seen to be.
+  static bool faces_elsewhere(const Eigen::Vector3f& normal, const SurfelShape& shape) {
+    constexpr float least_cosine = 0.5f, least_level = 0.7f;
+    if (normal.isZero(0) || shape.isotropic != 0 || std::abs(normal.dot(shape.normal)) >= least_cosine) return false;
+    return std::max(std::abs(normal.z()), std::abs(shape.normal.z())) > least_level;
+  }
+
+  /// @param normal  of the surfel, in the axes of the map; zero where it is not known
+  void keep(std::uint32_t i, const Eigen::Vector3f& normal, float max_distance_m) {
     for (int a = 0; a < 3; ++a) columns_[std::size_t(searched_x + a)][i] = columns_[std::size_t(x + a)][i];
     const bool found = block_[i] != VoxelIndex::none && squared_[i] <= max_distance_m * max_distance_m;
     const float way = way_to_change(i, found, max_distance_m);
     gap2_[i] = way > 0 ? way * way : -1.0f;
-    const SurfelShape shape = found ? view_->shape(block_[i], entry_[i]) : SurfelShape{};
+    SurfelShape shape = found ? view_->shape(block_[i], entry_[i]) : SurfelShape{};
+    if (faces_elsewhere(normal, shape)) shape = {};
     columns_[isotropic][i] = shape.isotropic;
     columns_[directed][i] = shape.directed;
     if (!found) return;
@@ -275,7 +317,7 @@ class TargetState {
     float all = 0;
     for (std::size_t i = 0; i < count_; i += stride) {
       if (!(columns_[whitened][i] >= 0 && columns_[whitened][i] < std::numeric_limits<float>::infinity())) continue;
-      const float weight = tells_of(direction, i);
+      const float weight = tells_of(columns_, direction, i);
       weights[std::bit_cast<std::uint32_t>(columns_[whitened][i]) >> dropped_bits] += weight;
       all += weight;
     }
@@ -285,10 +327,10 @@ class TargetState {
     return 0.0;
   }
 
-  /// Share that the match of surfel `i` tells of a shift in that direction.
-  float tells_of(const Eigen::Vector3f& direction, std::size_t i) const {
-    const float along = direction.dot(Eigen::Vector3f(columns_[normal_x][i], columns_[normal_y][i], columns_[normal_z][i]));
-    return columns_[isotropic][i] * direction.squaredNorm() + columns_[directed][i] * along * along;
+  /// Share that the match of surfel `i` tells of a shift in that direction, of unit length.
+  static float tells_of(const Columns& c, const Eigen::Vector3f& direction, std::size_t i) {
+    const float along = direction.dot(Eigen::Vector3f(c[normal_x][i], c[normal_y][i], c[normal_z][i]));
+    return c[isotropic][i] + c[directed][i] * along * along;
   }
 
   /// Where a street binds little along it, nearly all surfels fit wherever on it the scan is put. They are many and set the scale, by which the few that know better would be outliers.
@@ -302,7 +344,8 @@ class TargetState {
   std::optional<SurfelMapView> view_;
   Eigen::Vector3i anchor_ = Eigen::Vector3i::Zero();
   std::size_t count_ = 0;
-  std::array<std::vector<float>, whitened + 1> columns_;
+  Columns columns_, remembered_;
+  Eigen::Isometry3d T_remembered_ = Eigen::Isometry3d::Identity();
   std::vector<float> gap2_, squared_, second_squared_, sample_;
   std::vector<std::uint32_t> block_, entry_, moved_;
 };
@@ -350,7 +393,7 @@ struct JointRegistration::Workspace {
                std::size_t stride) {
     source.assign(scan, options.point_sigma_m, stride);
     targets.resize(wanted.size());
-    for (std::size_t t = 0; t < wanted.size(); ++t) targets[t].begin(wanted[t], source.count, source.view().padded, guess);
+    for (std::size_t t = 0; t < wanted.size(); ++t) targets[t].begin(wanted[t], source, guess);
   }
 };
 
@@ -367,8 +410,7 @@ JointResult JointRegistration::align(const SurfelCloud& scan, std::span<const Jo
                                      const std::optional<PosePrior>& prior) {
   Workspace& w = *workspace_;
   w.prepare(scan, targets, guess, options_, 1);
-  const kernels::Source source = w.source.view();
-
+  constexpr int settled_after = 15;   // iterations
   JointResult result;
   result.T_map_scan = guess;
   std::vector<Linearization> parts(targets.size());
@@ -378,7 +420,7 @@ JointResult JointRegistration::align(const SurfelCloud& scan, std::span<const Jo
     const double least_scale = std::max(options_.min_scale, options_.start_scale * std::pow(0.5, result.iterations));
     w.R_map_scan = result.T_map_scan.linear();
     for (std::size_t t = 0; t < targets.size(); ++t) {
-      parts[t] = w.targets[t].linearize(*w.table, source, w.source.sparse, result.T_map_scan, options_, least_scale);
+      parts[t] = w.targets[t].linearize(*w.table, w.source, result.T_map_scan, options_, least_scale, result.iterations >= settled_after);
       H += parts[t].H;
       g += parts[t].g;
     }
@@ -403,17 +445,17 @@ std::vector<PlaneMatch> JointRegistration::plane_matches(std::size_t t) const {
 
 double JointRegistration::score(const Eigen::Isometry3d& T_map_scan) {
   double sum = 0;
-  for (TargetState& target : workspace_->targets) sum += target.score(*workspace_->table, workspace_->source.view(), T_map_scan, options_);
+  for (TargetState& target : workspace_->targets) sum += target.score(*workspace_->table, workspace_->source, T_map_scan, options_);
   return sum;
 }
 
-/// What speaks for a pose rather than for another.
-double JointRegistration::gain(const Eigen::Isometry3d& T_map_scan, const Eigen::Isometry3d& against) {
+void JointRegistration::remember(const Eigen::Isometry3d& T_map_scan) {
+  for (TargetState& target : workspace_->targets) target.remember(*workspace_->table, workspace_->source, T_map_scan, options_);
+}
+
+double JointRegistration::gain(const Eigen::Isometry3d& T_map_scan) {
   double sum = 0;
-  for (TargetState& target : workspace_->targets) {
-    sum += target.contrast(*workspace_->table, workspace_->source.view(), T_map_scan, against, options_);
-    sum -= target.contrast(*workspace_->table, workspace_->source.view(), against, T_map_scan, options_);
-  }
+  for (TargetState& target : workspace_->targets) sum += target.gain(*workspace_->table, workspace_->source, T_map_scan, options_);
   return sum;
 }
 
@@ -438,6 +480,19 @@ double JointRegistration::score(const SurfelCloud& scan, std::span<const JointTa
   return score(T_map_scan);
 }
 
+std::vector<double> JointRegistration::improvements(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan,
+                                                    std::span<const Eigen::Isometry3d> elsewhere, double sigma_m) {
+  workspace_->prepare(scan, blurred(targets, sigma_m), T_map_scan, options_, 1);
+  remember(T_map_scan);
+  std::vector<double> improvements;
+  for (const Eigen::Isometry3d& T : elsewhere) {
+    double sum = 0;
+    for (TargetState& target : workspace_->targets) sum += target.improvement(*workspace_->table, workspace_->source, T, options_);
+    improvements.push_back(sum);
+  }
+  return improvements;
+}
+
 std::vector<ScoredResult> JointRegistration::search(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess,
                                                     const PoseSearchOptions& search) {
   struct Start {
@@ -445,8 +500,12 @@ std::vector<ScoredResult> JointRegistration::search(const SurfelCloud& scan, std
     Eigen::Isometry3d T;
   };
   std::vector<Start> starts;
-  workspace_->prepare(scan, blurred(targets, search.sigma_m), guess, options_, std::max<std::size_t>(1, scan.size() / std::size_t(search.surfels)));
-  const auto rank = [&](const Eigen::Isometry3d& T) { return search.against ? gain(T, *search.against) : score(T); };
+  const auto prepare = [&](std::span<const JointTarget> wanted, const Eigen::Isometry3d& T, std::size_t stride) {
+    workspace_->prepare(scan, wanted, T, options_, stride);
+    if (search.against) remember(*search.against);
+  };
+  const auto rank = [&](const Eigen::Isometry3d& T) { return search.against ? gain(T) : score(T); };
+  prepare(blurred(targets, search.sigma_m), guess, std::max<std::size_t>(1, scan.size() / std::size_t(search.surfels)));
   const int steps = int(search.radius_m / search.step_m), turns = int(search.yaw_rad / search.step_rad);
   for (int turn = -turns; turn <= turns; ++turn)
     for (int i = -steps; i <= steps; ++i)
@@ -464,7 +523,7 @@ std::vector<ScoredResult> JointRegistration::search(const SurfelCloud& scan, std
     const JointResult match = align(scan, targets, start.T);
     const bool known = std::any_of(found.begin(), found.end(), [&](const ScoredResult& other) { return same_place(other.match.T_map_scan, match.T_map_scan); });
     if (known) continue;
-    workspace_->prepare(scan, targets, match.T_map_scan, options_, 1);
+    prepare(targets, match.T_map_scan, 1);
     found.push_back({match, rank(match.T_map_scan)});
   }
   std::stable_sort(found.begin(), found.end(), [](const ScoredResult& a, const ScoredResult& b) { return a.score > b.score; });

@@ -36,8 +36,8 @@ std::uint64_t neighbour_of(std::uint64_t key, std::int32_t x, std::int32_t y, st
 /// What the way of scanning draws travels with the sensor, and holds it where it was thought to be: rings flat in the lasers' cones, and a wall seen so slantwise that one column of points
 /// stands alone, as a pole does. But of a pole each laser hits some.
 bool is_of_the_scanning(const SurfelShape& shape, const Surfel& all) {
-  constexpr float most_cosine = 0.9f, least_width_m = 0.02f;
-  if (shape.directed > 0) return std::abs(shape.normal.dot(cone_normal(all.mean))) > most_cosine;
+  constexpr float least_width_m = 0.02f;
+  if (shape.directed > 0) return std::abs(shape.normal.dot(cone_normal(all.mean))) > near_cone_cosine;
   const Eigen::Vector3f across = shape.normal.cross(all.mean).normalized();
   return shape.isotropic > 0 && across.dot(full_of(all.covariance) * across) < least_width_m * least_width_m;
 }

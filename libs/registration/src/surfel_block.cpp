@@ -80,12 +80,12 @@ SurfelShape SurfelMap::Block::shape_of(const Entry& entry, float voxel_m) {
   const float sigma = std::sqrt(entry.variance_sum / entry.surfel.count);
   if (!entry.normal_sum.isZero(0)) return {entry.normal_sum.normalized(), 0, 1, sigma};
   SurfelShape shape = shape_of_moments(entry.surfel, voxel_m);
-  constexpr float in_cone = 0.996f, near_cone = 0.9f;   // 5 and 26 degrees
+  constexpr float in_cone = 0.996f;   // 5 degrees
   if (shape.directed > 0) {
     const float cosine = cosine_to_cone(entry, shape.normal);
     if (cosine > in_cone)
       shape = {};
-    else if (cosine > near_cone)
+    else if (cosine > near_cone_cosine)
       shape = shape_around(entry.surfel, voxel_m);
   }
   if (shape.tells_nothing()) shape = entry.around;

@@ -33,6 +33,8 @@ SurfelShape shape_wider_than(float narrow_m, const Surfel& surfel, float voxel_m
   return shape;
 }
 
+Eigen::Vector3f plane_normal(const SurfelShape& shape) { return shape.isotropic == 0 && shape.directed > 0 ? shape.normal : Eigen::Vector3f::Zero(); }
+
 }  // namespace
 
 bool is_wide(const Surfel& surfel, float voxel_m) {
@@ -54,9 +56,15 @@ Eigen::Vector3f cone_normal(const Eigen::Vector3f& p) {
   return across.isZero(0) ? across : across.normalized();
 }
 
-Eigen::Vector3f normal_of(const Surfel& surfel, double voxel_m) {
-  const SurfelShape shape = shape_of_moments(surfel, float(voxel_m));
-  return shape.isotropic == 0 && shape.directed > 0 ? shape.normal : Eigen::Vector3f::Zero();
+Eigen::Vector3f normal_of(const Surfel& surfel, double voxel_m) { return plane_normal(shape_of_moments(surfel, float(voxel_m))); }
+
+void tell_normals(SurfelCloud& scan, double voxel_m) {
+  scan.normals.resize(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const SurfelShape own = shape_of_moments(scan.surfels[i], float(voxel_m));
+    scan.normals[i] = plane_normal(own.tells_nothing() && !scan.around.empty() ? scan.around[i] : own);
+  }
+  std::vector<SurfelShape>().swap(scan.around);   // with its memory
 }
 
 }  // namespace priormap

@@ -12,6 +12,9 @@ SurfelShape shape_around(const Surfel& all, float voxel_m);
 /// Whether its points spread across the trace of one laser: by the invariants of their moments, without their axes.
 bool is_wide(const Surfel& surfel, float voxel_m);
 
+/// Planes whose normals are within 26 degrees of that of the cone may be what the way of scanning draws.
+inline constexpr float near_cone_cosine = 0.9f;
+
 /// Of the cone that a laser draws that spins about the sensor's z axis, where it meets `p`, from the sensor; zero on the axis.
 Eigen::Vector3f cone_normal(const Eigen::Vector3f& p);
 

@@ -98,6 +98,64 @@ TEST(JointRegistrationInACanyon, TheInformationSaysThatAlongTheStreetNothingIsKn
   EXPECT_GT(std::abs(o.translation_axes(0, 0)), 0.99);  // the sensor looks along the street
 }
 
+/// A wall's traces above the ground are nearer to that than to what an outline knows of the wall; they are many, and the ground shows little.
+TEST(JointRegistrationOfNormals, WhatFacesElsewhereDoesNotLieOnTheNearestPlane) {
+  PointCloud ground;
+  SurfelCloud scan;
+  for (int x = -10; x < 10; ++x)
+    for (int y = -3; y < 3; ++y) {
+      const Eigen::Vector3f p(float(x) + 0.5f, float(y) + 0.5f, 0.5f), above = p + Eigen::Vector3f(0, 0, 0.6f);
+      ground.xyz.push_back(p);
+      ground.normal.push_back(Eigen::Vector3f::UnitZ());
+      const bool street = std::abs(y) < 2;
+      if (street && x % 4 == 0) scan.surfels.push_back({.mean = p, .count = 20}), scan.normals.push_back(Eigen::Vector3f::UnitZ());
+      if (!street) scan.surfels.push_back({.mean = above, .count = 20}), scan.normals.push_back(Eigen::Vector3f::UnitY());
+    }
+  SurfelMap prior;
+  prior.insert(ground);
+  const JointTarget target{&prior};
+  const Eigen::Isometry3d truth = Eigen::Isometry3d::Identity(), guess = street::pose(0, 0, 0.1, 0);
+  const auto height_m = [&] { return JointRegistration().align(scan, {&target, 1}, guess).T_map_scan.translation().z(); };
+  EXPECT_NEAR(height_m(), truth.translation().z(), 1e-3);
+  scan.normals.clear();
+  EXPECT_LT(height_m(), -0.1);   // pulled down to them
+}
+
+TEST_F(JointRegistrationTest, WhereTheWordOfNormalsIsWrittenNothingIsLost) {
+  SurfelCloud noisy = scan(0.02);
+  tell_normals(noisy, 1.0);
+  const JointTarget target{&prior};
+  const JointResult result = registration.align(noisy, {&target, 1}, truth * street::pose(0.4, 0.2, 0.1, 0.02));
+  EXPECT_LT(street::distance(result.T_map_scan, truth), 0.01);
+  EXPECT_GT(double(result.targets[0].num_correspondences), 0.9 * double(noisy.size()));
+}
+
+/// A room's surfels hold it on all sides: which direction they tell least of changes with each step, which must end.
+TEST(JointRegistrationInARoom, EndsWhereNoDirectionIsTheWeakest) {
+  std::mt19937 random(1);
+  std::normal_distribution<float> noise(0, 0.08f);
+  PointCloud planes;
+  SurfelCloud scan;
+  const auto add = [&](const Eigen::Vector3f& p, const Eigen::Vector3f& normal) {
+    planes.xyz.push_back(p);
+    planes.normal.push_back(normal);
+    scan.surfels.push_back({.mean = p + noise(random) * normal, .count = 20});
+  };
+  for (int a = -3; a < 3; ++a)
+    for (int b = -3; b < 3; ++b)
+      for (const float side : {-3.5f, 3.5f})
+        for (int axis = 0; axis < 3; ++axis) {
+          Eigen::Vector3f p;
+          p[axis] = side, p[(axis + 1) % 3] = float(a) + 0.5f, p[(axis + 2) % 3] = float(b) + 0.5f;
+          add(p, Eigen::Vector3f::Unit(axis));
+        }
+  scan.around.resize(scan.size());   // as of few lasers
+  SurfelMap map;
+  map.insert(planes);
+  const JointTarget target{&map};
+  for (const double off_m : {0.0, 0.05, 0.1, 0.2}) EXPECT_TRUE(JointRegistration().align(scan, {&target, 1}, street::pose(off_m, -off_m, 0, off_m / 10)).converged) << off_m;
+}
+
 /// Two scans of few lasers, the first of which is the map; little but piers tells how far the sensor went between them.
 class JointRegistrationOfFewLasers : public testing::Test {
  protected:

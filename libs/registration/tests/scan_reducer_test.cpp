@@ -152,4 +152,25 @@ TEST(ScanReducer, SurfelsOfManyLasersTellThemselves) {
   EXPECT_TRUE(reduced(street::canyon_with_piers(), {.columns = 2000}).around.empty());
 }
 
+/// By its own points where they spread, by those around it where it is a trace; those of the others are not told.
+TEST(Normals, AreThoseOfAllSurfelsThatTell) {
+  SurfelCloud scan = reduced(street::wide_street(), street::vlp16);
+  const SurfelCloud before = scan;
+  ASSERT_EQ(before.around.size(), scan.size());
+  tell_normals(scan, 1.0);
+  ASSERT_EQ(scan.normals.size(), scan.size());
+  EXPECT_TRUE(scan.around.empty());
+  std::size_t num_of_own = 0, num_of_around = 0, num_unknown = 0;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Eigen::Vector3f own = normal_of(scan.surfels[i], 1.0);
+    const SurfelShape& around = before.around[i];
+    const Eigen::Vector3f expected = !own.isZero(0) ? own : around.directed > 0 ? around.normal : Eigen::Vector3f::Zero();
+    EXPECT_EQ(scan.normals[i], expected);
+    ++(!own.isZero(0) ? num_of_own : expected.isZero(0) ? num_unknown : num_of_around);
+  }
+  EXPECT_GT(num_of_own, 50u);
+  EXPECT_GT(num_of_around, 50u);
+  EXPECT_GT(num_unknown, 10u);
+}
+
 }  // namespace

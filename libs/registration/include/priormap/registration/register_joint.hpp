@@ -51,7 +51,7 @@ struct PoseSearchOptions {
   double sigma_m = 0.3;      ///< of the residuals while starts are compared
   int surfels = 400;         ///< of the scan, for comparing starts
   int refined = 8;           ///< best starts that are registered
-  /// Poses are ranked by what speaks for them rather than for this one: how surfels fit counts by how much the two poses move them along the normals of the planes that they lie near. Most
+  /// Poses are ranked by what speaks for them rather than for this one, of the scan in the map: how surfels fit counts by how much the two poses move them along the normals of the planes that they lie near. Most
   /// of a street, and all rings of a lidar on level ground, fit anywhere along it.
   std::optional<Eigen::Isometry3d> against = std::nullopt;
 };
@@ -67,7 +67,7 @@ struct TargetResult {
   std::size_t num_correspondences = 0;
   std::size_t num_inliers = 0;               ///< whitened residual below kernel_width: what the stated sigmas explain
   double inlier_rmse_m = 0;
-  Matrix6d information = Matrix6d::Zero();   ///< J^T W J of this target alone, times its weight, and divided by the square of the residuals' robust standard deviation where they scatter more than stated
+  Matrix6d information = Matrix6d::Zero();   ///< J^T W J of this target alone, times its weight, and divided by the square of the residuals' robust standard deviation where they scatter more than stated; for few lasers less is known along the direction that it tells least of
   double inlier_share() const { return num_correspondences == 0 ? 0.0 : double(num_inliers) / double(num_correspondences); }
 };
 
@@ -86,19 +86,20 @@ struct JointResult {
   Eigen::Isometry3d T_map_scan = Eigen::Isometry3d::Identity();
   bool converged = false;
   int iterations = 0;
-  Matrix6d information = Matrix6d::Zero();   ///< of all targets and the pose prior together
+  Matrix6d information = Matrix6d::Zero();   ///< of all targets and the pose prior together, by which the last step was made
   std::vector<TargetResult> targets;         ///< in the order given
 };
 
 struct ScoredResult {
   JointResult match;
-  double score = 0;
+  double score = 0;   ///< as of `score`; against another pose, what speaks for this one, in surfels
 };
 
 /// Registers scans against several maps at once: the normal equations of all targets add up to one 6x6 system (and a prior on the pose, if given), solved by Gauss-Newton.
 /// A residual is the distance of a scan surfel's mean from the plane (line, point) of the nearest map surfel, whitened by the sum of that surfel's variance, the point
 /// noise, and the scan surfel's own covariance along the normal (plane to plane: Segal et al., Generalized-ICP, RSS 2009, where both normals agree; a scan surfel that does
-/// not lie in the plane weighs little). Geman-McClure kernel; its width follows, target by target and iteration by iteration, the median of the residuals.
+/// not lie in the plane weighs little). Geman-McClure kernel; its width follows, target by target and iteration by iteration, the median of the residuals; for few lasers it is wider for what tells of the direction that they tell least of.
+/// Scans with normals: ground is not compared with walls.
 /// A correspondence is searched anew only when the mean has moved by half the gap between the nearest and the second-nearest surfel.
 /// One thread; keeps its buffers from scan to scan. Same bytes for the same input.
 class JointRegistration {
@@ -118,6 +119,8 @@ class JointRegistration {
 
   /// How well a scan fits at a pose: 0.15 for each surfel that does, down to -0.85 for one whose nearest plane is far off; none for one that the maps do not know.
   double score(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan, double sigma_m);
+  /// By how much a scan fits walls better at each of some poses nearby: up to 1 for each surfel that has a match at both.
+  std::vector<double> improvements(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan, std::span<const Eigen::Isometry3d> elsewhere, double sigma_m);
 
   /// Which planes of target `t` the last `align` compared with, at the pose it returned but for its last step.
   std::vector<PlaneMatch> plane_matches(std::size_t t) const;
@@ -125,7 +128,8 @@ class JointRegistration {
  private:
   struct Workspace;
   double score(const Eigen::Isometry3d& T_map_scan);
-  double gain(const Eigen::Isometry3d& T_map_scan, const Eigen::Isometry3d& against);
+  void remember(const Eigen::Isometry3d& T_map_scan);
+  double gain(const Eigen::Isometry3d& T_map_scan);
   JointOptions options_;
   std::unique_ptr<Workspace> workspace_;
 };

@@ -34,9 +34,14 @@ struct SurfelCloud {
   std::vector<Surfel> surfels;
   /// Of the surface that each lies on, by the points around it, where its own do not tell: a sensor of few lasers draws single traces, but several within some metres. As many; empty where enough surfels tell for themselves.
   std::vector<SurfelShape> around;
+  /// Unit, of the surface that each lies on; zero where that is not known. As many, or empty: not asked for. With them ground is not compared with walls.
+  std::vector<Eigen::Vector3f> normals = {};
 
   std::size_t size() const { return surfels.size(); }
   bool empty() const { return surfels.empty(); }
 };
+
+/// Normals of all surfels of a scan reduced to voxels: by their own points, else by those around them, which are not kept.
+void tell_normals(SurfelCloud& scan, double voxel_m);
 
 }  // namespace priormap
