@@ -25,10 +25,7 @@ std::vector<Eigen::Vector2d> places_inside(const ProjectedFootprint& footprint) 
   return places;
 }
 
-/// Tied by a relation, or by a relation not held apart.
-bool may_belong(const Footprint& part, const Footprint& outline) {
-  return part.building == Footprint::no_building || part.building == outline.building;
-}
+bool are_tied(const Footprint& part, const Footprint& outline) { return part.building != Footprint::no_building && part.building == outline.building; }
 
 double share_inside(const std::vector<Eigen::Vector2d>& places, const std::vector<Polygon2>& polygons) {
   if (places.empty()) return 0;
@@ -44,13 +41,12 @@ PartAssignment assign_parts(const ProjectedFootprints& footprints) {
     if (footprints.kind(i) != Footprint::Kind::part || footprints.is_empty(i)) continue;
     const ProjectedFootprint part = footprints[i];
     const std::vector<Eigen::Vector2d> places = places_inside(part);
-    double best_share = 0.5;
+    constexpr double least_share = 0.5, share_of_tied = 2;   // before any share that a place gives
+    double best_share = least_share;
     for (const std::uint32_t other : footprints.meeting(part.bounds)) {
       if (footprints.kind(other) != Footprint::Kind::outline) continue;
       const ProjectedFootprint outline = footprints[other];
-      if (!may_belong(part.footprint, outline.footprint)) continue;
-      const bool tied = part.footprint.building != Footprint::no_building;
-      const double share = tied ? 1 : share_inside(places, outline.polygons);
+      const double share = are_tied(part.footprint, outline.footprint) ? share_of_tied : share_inside(places, outline.polygons);
       if (share < best_share) continue;
       best_share = share;
       assignment.outline_of[i] = other;

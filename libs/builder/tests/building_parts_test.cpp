@@ -49,5 +49,13 @@ TEST(BuildingParts, ARelationTiesPartsToItsOwnOutline) {
   EXPECT_EQ(tied.outline_of[2], 1u);
 }
 
+TEST(BuildingParts, ARelationWithoutItsOutlineChangesNothing) {
+  for (const std::uint32_t building_of_outline : {Footprint::no_building, 1u}) {
+    const PartAssignment untied = assign(std::vector{box(0, 0, 20, 10, outline, building_of_outline), box(0, 0, 12, 10, part, 2), box(12, 0, 20, 10, part, 2)});
+    EXPECT_TRUE(untied.replaced[0]);
+    EXPECT_EQ(untied.outline_of[1], 0u);
+  }
+}
+
 }  // namespace
 }  // namespace priormap

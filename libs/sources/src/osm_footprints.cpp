@@ -218,8 +218,8 @@ class FootprintAssembly {
  private:
   static bool is_outer(const Member& member) { return member.type == osmium::item_type::way && (member.role == "outer" || member.role.empty()); }
 
-  /// Relations of type building: number their outlines and parts. Multipolygons: a tag on an outer way that the relation lacks is the relation's;
-  /// the way itself is then no building of its own.
+  /// Relations of type building: number their outlines and parts. Multipolygons: a tag on an outer way that the relation lacks is the relation's, and so is
+  /// the building it is tied to; the way itself is then no building of its own.
   void inherit_tags_along_relations() {
     for (auto& [id, relation] : objects_.relations)
       if (relation.is_building_relation) number_members(relation);
@@ -239,6 +239,7 @@ class FootprintAssembly {
           fill_missing(relation.attributes, attributes);
         }
         way->is_building = way->is_part = false;
+        if (const auto building = building_of_way_.find(way->id); building != building_of_way_.end()) building_of_relation_.try_emplace(id, building->second);
       }
     }
   }
@@ -258,26 +259,23 @@ class FootprintAssembly {
     if (attributes.roof_shape == RoofShape::flat) attributes.roof_shape = from.roof_shape;
   }
 
+  /// Parts carry the role "part". The outline's is "outline", but "outer" and none are in use too: without a role the member's own tags tell.
   void number_members(const Relation& relation) {
     const std::uint32_t number = num_building_relations_++;
     for (const Member& member : relation.members) {
-      const bool outline = member.role == "outline", part = member.role == "part";
-      if (!outline && !part) continue;
+      const bool is_outline = member.role == "outline" || member.role == "outer", is_part = member.role == "part";
+      if (!is_outline && !is_part && !member.role.empty()) continue;
       const auto mark = [&](auto& object) {
-        object.is_part |= part;
-        object.is_building |= outline;
+        object.is_part |= is_part;
+        object.is_building |= is_outline;
+        return object.is_building && !is_part;
       };
       if (member.type == osmium::item_type::way) {
-        if (Way* way = objects_.find_way(member.ref)) {
-          mark(*way);
-          if (outline) describe(*way, relation.attributes);
-        }
+        if (Way* way = objects_.find_way(member.ref); way && mark(*way)) describe(*way, relation.attributes);
         building_of_way_[member.ref] = number;
       } else if (member.type == osmium::item_type::relation) {
-        if (const auto other = objects_.relations.find(member.ref); other != objects_.relations.end()) {
-          mark(other->second);
-          if (outline) fill_missing(other->second.attributes, relation.attributes);
-        }
+        if (const auto other = objects_.relations.find(member.ref); other != objects_.relations.end() && mark(other->second))
+          fill_missing(other->second.attributes, relation.attributes);
         building_of_relation_[member.ref] = number;
       }
     }

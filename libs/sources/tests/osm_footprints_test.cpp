@@ -176,6 +176,33 @@ TEST_F(OsmFootprints, ABuildingRelationTiesPartsToTheirOutline) {
   EXPECT_EQ(footprints[2].building, Footprint::no_building);
 }
 
+TEST_F(OsmFootprints, TheOutlineOfABuildingRelationMayHaveAnotherRoleOrNone) {
+  for (const std::string role : {"outline", "outer", ""}) {
+    const auto footprints = read(OsmText()
+        .way(1, {0, 9, 909, 900, 0}, building).way(2, {0, 4, 904, 900, 0}, OsmText::tag("building:part", "yes")).way(3, {1010, 1012, 1212, 1010}, OsmText::tag("building:part", "yes"))
+        .relation(9, OsmText::member(1, role) + OsmText::member(2, "part") + OsmText::member(3, "") + OsmText::tag("type", "building") + OsmText::tag("height", "12")));
+    ASSERT_EQ(footprints.size(), 3u);
+    EXPECT_EQ(footprints[0].attributes.height_m, 12) << role;
+    EXPECT_NE(footprints[0].building, Footprint::no_building) << role;
+    for (const int part : {1, 2}) {
+      EXPECT_EQ(footprints[part].kind, Footprint::Kind::part);
+      EXPECT_FALSE(footprints[part].attributes.height_m);
+      EXPECT_EQ(footprints[part].building, footprints[0].building) << role;
+    }
+  }
+}
+
+TEST_F(OsmFootprints, AnOutlineThatIsTheOuterWayOfAMultipolygonTiesTheMultipolygon) {
+  const auto footprints = read(OsmText()
+      .way(1, {0, 9, 909, 900, 0}, "").way(2, {101, 103, 303, 301, 101}, "").way(3, {0, 4, 904, 900, 0}, OsmText::tag("building:part", "yes"))
+      .relation(8, OsmText::member(1, "outer") + OsmText::member(2, "inner") + multipolygon + building)
+      .relation(9, OsmText::member(1, "outline") + OsmText::member(3, "part") + OsmText::tag("type", "building")));
+  ASSERT_EQ(footprints.size(), 2u);
+  EXPECT_EQ(footprints[0].id, "relation/8");
+  EXPECT_NE(footprints[0].building, Footprint::no_building);
+  EXPECT_EQ(footprints[0].building, footprints[1].building);
+}
+
 TEST_F(OsmFootprints, SeveralFilesAreOneDataSetInAnyOrder) {
   const fs::path a = write("a.osm", OsmText().way(1, {0, 4, 304, 300, 0}, building).way(2, {10, 12, 212, 10}, building).text());
   const fs::path b = write("b.osm", OsmText().way(2, {10, 12, 212, 10}, building).way(3, {505, 507, 707, 505}, building).text());
