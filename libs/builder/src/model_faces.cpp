@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <priormap/pointcloud/slope.hpp>
 
@@ -23,10 +24,14 @@ bool clean(Ring3& ring, const std::string& feature, Diagnostics& diagnostics) {
   return false;
 }
 
-double deviation_from_plane(const Polygon3& polygon, const Eigen::Vector3d& normal) {
+Eigen::Vector3d middle_of(const Ring3& ring) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& p : polygon.exterior) middle += p;
-  middle /= static_cast<double>(polygon.exterior.size());
+  for (const Eigen::Vector3d& p : ring) middle += p;
+  return middle / static_cast<double>(ring.size());
+}
+
+double deviation_from_plane(const Polygon3& polygon, const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d middle = middle_of(polygon.exterior);
   double deviation = 0;
   for_each_ring(polygon, [&](const Ring3& ring) {
     for (const Eigen::Vector3d& p : ring) deviation = std::max(deviation, std::abs(normal.dot(p - middle)));
@@ -54,6 +59,45 @@ void turn_over(ModelFace& face) {
   face.normal = -face.normal;
 }
 
+/// The faces of one part of a model as a solid.
+struct Solid {
+  void add(const ModelFace& face, const Eigen::Vector3d& anchor) {
+    const Eigen::Vector3d twice = newell_normal(face.polygon);
+    twice_vector_area += twice;
+    twice_area += twice.norm();
+    six_volumes += twice.dot(middle_of(face.polygon.exterior) - anchor);
+  }
+  /// The vectors of area cancel where faces close a solid; only there its volume does not depend on the anchor.
+  bool looks_inward() const {
+    constexpr double rounding = 1e-3, least_thickness = 1e-6;
+    return twice_vector_area.norm() < rounding * twice_area && six_volumes < -least_thickness * std::pow(twice_area, 1.5);
+  }
+
+  Eigen::Vector3d twice_vector_area = Eigen::Vector3d::Zero();
+  double twice_area = 0, six_volumes = 0;
+};
+
+void turn_solids_outward(std::vector<ModelFace>& faces, const std::string& feature, Diagnostics& diagnostics) {
+  std::map<int, Solid> solids;
+  for (const ModelFace& face : faces) solids[face.part].add(face, faces.front().polygon.exterior.front());
+  for (const auto& [part, solid] : solids) {
+    if (!solid.looks_inward()) continue;
+    diagnostics.add(DiagnosticCode::polygon_wrong_orientation, feature, "a solid whose faces look inward");
+    for (ModelFace& face : faces)
+      if (face.part == part) turn_over(face);
+  }
+}
+
+/// Single faces: what they are, and that roofs look up.
+void name_and_turn(ModelFace& face, const BuildingModel& model, Diagnostics& diagnostics) {
+  const bool looks_up_by_kind = face.surface_class == SurfaceClass::roof || face.surface_class == SurfaceClass::terrain;
+  if (looks_up_by_kind && face.normal.z() < -0.1) {
+    diagnostics.add(DiagnosticCode::polygon_wrong_orientation, model.id, "a roof that looks down");
+    turn_over(face);
+  }
+  if (face.surface_class == SurfaceClass::unclassified) face.surface_class = class_by_slope(face.normal, model.kind);
+}
+
 }  // namespace
 
 std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diagnostics) {
@@ -62,7 +106,7 @@ std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diag
   double total_m2 = 0;
   for (const ModelPolygon& stated : model.polygons) {
     if (!stated.closed) diagnostics.add(DiagnosticCode::ring_not_closed, model.id, "a ring does not repeat its first point");
-    ModelFace face{stated.polygon, Eigen::Vector3d::Zero(), stated.surface_class};
+    ModelFace face{stated.polygon, Eigen::Vector3d::Zero(), stated.surface_class, stated.part};
     if (!clean(face.polygon.exterior, model.id, diagnostics)) continue;
     std::erase_if(face.polygon.holes, [&](Ring3& hole) { return !clean(hole, model.id, diagnostics); });
     const Eigen::Vector3d twice_area = newell_normal(face.polygon);
@@ -80,14 +124,10 @@ std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diag
     const double deviation = deviation_from_plane(face.polygon, face.normal);
     face.planar = deviation <= planarity_m;
     if (!face.planar) diagnostics.add(DiagnosticCode::non_planar_polygon, model.id, std::to_string(deviation) + " m from its plane");
-    const bool looks_up_by_kind = face.surface_class == SurfaceClass::roof || face.surface_class == SurfaceClass::terrain;
-    if (looks_up_by_kind && face.normal.z() < -0.1) {
-      diagnostics.add(DiagnosticCode::polygon_wrong_orientation, model.id, "a roof that looks down");
-      turn_over(face);
-    }
-    if (face.surface_class == SurfaceClass::unclassified) face.surface_class = class_by_slope(face.normal, model.kind);
     faces.push_back(std::move(face));
   }
+  if (model.kind != ModelKind::terrain) turn_solids_outward(faces, model.id, diagnostics);
+  for (ModelFace& face : faces) name_and_turn(face, model, diagnostics);
   return faces;
 }
 

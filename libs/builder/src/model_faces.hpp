@@ -11,11 +11,12 @@ struct ModelFace {
   Polygon3 polygon;
   Eigen::Vector3d normal;   ///< unit, outward
   SurfaceClass surface_class;
+  int part = 0;             ///< as ModelPolygon's
   bool planar = true;       ///< within 1 cm (val3dity's default)
 };
 
-/// The faces of a model in metres. Defects are counted by val3dity's codes; polygons without area are left out. Faces that the
-/// file leaves unnamed are walls, roofs or ground surfaces by their slope; roofs that look down are turned over.
+/// The faces of a model in metres. Defects are counted by val3dity's codes; polygons without area are left out. Solids whose
+/// faces look inward are turned over (307), then single roofs that look down. Faces that the file leaves unnamed are walls, roofs or ground surfaces by their slope.
 std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diagnostics);
 
 /// False for what no beam from the street reaches: ground, floors, other undersides, and closures, which are not there. Of a bridge the deck and the

@@ -145,6 +145,7 @@ void assemble(GeometryItems geometry, const GeometryItems& shared, const Buildin
     if (lod == lods.end() || lod->second != item.context.lod) continue;
     if (!seen.insert(signature(item.polygon.polygon)).second) continue;
     item.polygon.surface_class = item.context.surface_class;
+    item.polygon.part = item.context.object;
     model.lod = std::max(model.lod, item.context.lod / 10);
     model.polygons.push_back(std::move(item.polygon));
   }

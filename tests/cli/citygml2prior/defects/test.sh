@@ -20,3 +20,23 @@ e=690000 f=690010 n=5340000 m=5340010
 succeeds citygml2prior odd.gml --quiet -o prior
 for code in 101 102 103 203 307 701 705 706; do grep -q "^diagnostic $code  *1$" stdout || { cat stdout >&2; die "$code is not counted once"; }; done
 succeeds priorinfo prior --check
+
+# A closed solid of unnamed faces that all look inward is the same solid.
+box() {
+  local e=690000 f=690010 n=5340000 m=5340010 faces=""
+  for ring in "$e $n 0 $e $m 0 $f $m 0 $f $n 0 $e $n 0" "$e $n 8 $f $n 8 $f $m 8 $e $m 8 $e $n 8" "$e $n 0 $f $n 0 $f $n 8 $e $n 8 $e $n 0" \
+              "$f $n 0 $f $m 0 $f $m 8 $f $n 8 $f $n 0" "$f $m 0 $e $m 0 $e $m 8 $f $m 8 $f $m 0" "$e $m 0 $e $n 0 $e $n 8 $e $m 8 $e $m 0"; do
+    [ "$1" = inward ] && ring=$(echo $ring | awk '{ for (i = NF; i > 0; i -= 3) printf "%s %s %s ", $(i - 2), $(i - 1), $i }')
+    faces+=$(polygon $ring)
+  done
+  echo "<CityModel><boundedBy><Envelope srsName='EPSG:25832'/></boundedBy><cityObjectMember><Building id='box'><lod1Solid><Solid><exterior><CompositeSurface>$faces</CompositeSurface>" \
+       "</exterior></Solid></lod1Solid></Building></cityObjectMember></CityModel>"
+}
+for way in outward inward; do
+  box $way >$way.gml
+  succeeds citygml2prior $way.gml --quiet -o prior-$way
+  mv stdout $way.txt
+done
+cmp prior-outward/tiles.idx prior-inward/tiles.idx || die "a box turned inside out is another"
+grep -q "^diagnostic 307  *1$" inward.txt || die "the box turned inside out is not counted"
+! grep -q "^diagnostic" outward.txt || die "a good box is counted"

@@ -15,6 +15,7 @@ struct ModelPolygon {
   Polygon3 polygon;                                         ///< counter-clockwise seen from outside, in the file's axis order and units
   SurfaceClass surface_class = SurfaceClass::unclassified;  ///< unclassified: the file names no boundary surface
   bool closed = true;                                       ///< every ring repeated its first point (CityJSON: by definition)
+  int part = 0;                                             ///< 0: of the building itself, 1...: of its parts
 };
 
 enum class ModelKind {
