@@ -314,6 +314,7 @@ class FootprintAssembly {
         diagnostics_.add(DiagnosticCode::unresolved_reference, feature, "no file holds its member " + feature_id("way", member.ref));
     }
     const OsmRings assembled = assemble_rings(ways);
+    for (int i = 0; i < assembled.repeated; ++i) diagnostics_.add(DiagnosticCode::duplicated_rings, feature, "a way is given twice; taken once");
     if (!assembled.complete) diagnostics_.add(DiagnosticCode::ring_not_closed, feature, "some of its ways close no ring; left out");
 
     Footprint footprint{feature, {}, relation.attributes, kind(relation.is_building), Footprint::no_building, relation.file};

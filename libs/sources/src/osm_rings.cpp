@@ -1,7 +1,9 @@
 #include "osm_rings.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <utility>
 
 namespace priormap {
 namespace {
@@ -13,23 +15,44 @@ struct Segment {
   OsmNodeId other(OsmNodeId node) const { return node == a ? b : a; }
 };
 
+std::vector<Segment> segments_of(const OsmMemberWay& way) {
+  std::vector<Segment> segments;
+  for (std::size_t i = 0; i + 1 < way.nodes.size(); ++i)
+    if (way.nodes[i] != way.nodes[i + 1]) {
+      const auto [a, b] = std::minmax(way.nodes[i], way.nodes[i + 1]);
+      segments.push_back({a, b, way.inner});
+    }
+  return segments;
+}
+
+std::pair<OsmNodeId, OsmNodeId> ends(const Segment& segment) { return {segment.a, segment.b}; }
+
 /// Each stretch between two nodes that occurs an odd number of times, once.
 std::vector<Segment> segments_of(const std::vector<OsmMemberWay>& ways) {
   std::vector<Segment> all;
-  for (const OsmMemberWay& way : ways)
-    for (std::size_t i = 0; i + 1 < way.nodes.size(); ++i)
-      if (way.nodes[i] != way.nodes[i + 1]) {
-        const auto [a, b] = std::minmax(way.nodes[i], way.nodes[i + 1]);
-        all.push_back({a, b, way.inner});
-      }
-  const auto key = [](const Segment& s) { return std::pair(s.a, s.b); };
-  std::ranges::stable_sort(all, {}, key);
+  for (const OsmMemberWay& way : ways) std::ranges::copy(segments_of(way), std::back_inserter(all));
+  std::ranges::stable_sort(all, {}, ends);
   std::vector<Segment> odd;
   for (const Segment& segment : all) {
-    if (!odd.empty() && key(odd.back()) == key(segment)) odd.pop_back();
+    if (!odd.empty() && ends(odd.back()) == ends(segment)) odd.pop_back();
     else odd.push_back(segment);
   }
   return odd;
+}
+
+/// Ways that run where an earlier one does left out; that one is inner only if all of them are.
+std::vector<OsmMemberWay> each_once(const std::vector<OsmMemberWay>& ways) {
+  std::map<std::vector<std::pair<OsmNodeId, OsmNodeId>>, std::size_t> first_along;
+  std::vector<OsmMemberWay> once;
+  for (const OsmMemberWay& way : ways) {
+    std::vector<std::pair<OsmNodeId, OsmNodeId>> stretches;
+    std::ranges::transform(segments_of(way), std::back_inserter(stretches), ends);
+    std::ranges::sort(stretches);
+    const auto [first, is_new] = first_along.try_emplace(std::move(stretches), once.size());
+    if (is_new) once.push_back(way);
+    else once[first->second].inner &= way.inner;
+  }
+  return once;
 }
 
 class SegmentGraph {
@@ -91,9 +114,7 @@ class SegmentGraph {
   std::map<OsmNodeId, std::vector<std::size_t>> at_;
 };
 
-}  // namespace
-
-OsmRings assemble_rings(const std::vector<OsmMemberWay>& ways) {
+OsmRings rings_of(const std::vector<OsmMemberWay>& ways) {
   SegmentGraph graph(segments_of(ways));
   const bool had_open_ends = graph.cut_open_ends();
   if (graph.has_odd_node()) {  // a way bridges two rings: no walk uses each stretch once, so keep the ways that close by themselves
@@ -109,6 +130,17 @@ OsmRings assemble_rings(const std::vector<OsmMemberWay>& ways) {
   OsmRings result = graph.rings();
   result.complete = !had_open_ends;
   return result;
+}
+
+}  // namespace
+
+OsmRings assemble_rings(const std::vector<OsmMemberWay>& ways) {
+  const std::vector<OsmMemberWay> once = each_once(ways);
+  OsmRings result = rings_of(once);
+  result.repeated = static_cast<int>(ways.size() - once.size());
+  if (result.complete || result.repeated == 0) return result;
+  OsmRings all = rings_of(ways);   // two rings may each need the way that lies between them
+  return all.complete ? all : result;
 }
 
 }  // namespace priormap

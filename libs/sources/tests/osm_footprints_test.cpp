@@ -104,6 +104,32 @@ TEST_F(OsmFootprints, ObjectsMayStandBeforeWhatTheyReferTo) {
   EXPECT_EQ(diagnostics_.total(), 0u);
 }
 
+TEST_F(OsmFootprints, AMemberGivenTwiceCountsOnce) {
+  const OsmText rings = OsmText().way(1, {0, 9, 909, 900, 0}, "").way(2, {101, 108, 808, 801, 101}, "").way(3, {808, 108, 101, 801, 808}, "");   // 3: as 2, from elsewhere and the other way round
+  const std::string outer = OsmText::member(1, "outer"), inner = OsmText::member(2, "inner"), same_inner = OsmText::member(3, "inner");
+  for (const std::string& members : {outer + outer + inner, outer + inner + inner, inner + outer + same_inner}) {
+    diagnostics_ = {};
+    const auto footprints = read(OsmText(rings).relation(9, members + multipolygon + building));
+    ASSERT_EQ(footprints.size(), 1u);
+    EXPECT_NEAR(cells(footprints[0]), 81 - 49, 1e-6);
+    EXPECT_EQ(count(DiagnosticCode::duplicated_rings), 1u);
+  }
+}
+
+TEST_F(OsmFootprints, AnOpenMemberGivenTwiceCountsOnceUnlessItLiesBetweenTwoRings) {
+  const OsmText ways = OsmText().way(1, {0, 4, 404}, "").way(2, {0, 400, 404}, "").way(3, {4, 8, 408, 404}, "").way(4, {4, 404}, "");
+  const auto members = [](const std::vector<int>& ids) {
+    std::string text;
+    for (const int id : ids) text += OsmText::member(id, "outer");
+    return text + multipolygon + building;
+  };
+  EXPECT_NEAR(cells(read(OsmText(ways).relation(9, members({1, 2, 1})))[0]), 16, 1e-6);
+  EXPECT_EQ(count(DiagnosticCode::duplicated_rings), 1u);
+  const OsmText halves = OsmText(ways).way(5, {0, 4}, "").way(6, {404, 400, 0}, "");
+  EXPECT_NEAR(cells(read(OsmText(halves).relation(9, members({5, 4, 6, 3, 4})))[0]), 32, 1e-6);
+  EXPECT_EQ(count(DiagnosticCode::duplicated_rings), 1u);
+}
+
 TEST_F(OsmFootprints, TwoOuterRingsAndAnIsland) {
   const auto footprints = read(OsmText()
       .way(1, {0, 9, 909, 900, 0}, "").way(2, {101, 108, 808, 801, 101}, "").way(3, {303, 305, 505, 503, 303}, "").way(4, {12, 14, 214, 212, 12}, "")
