@@ -6,6 +6,8 @@
 #include <priormap/builder/prior_crs.hpp>
 #include <priormap/core/error.hpp>
 
+#include "raster_faults.hpp"
+
 namespace priormap {
 namespace {
 
@@ -21,9 +23,11 @@ struct NamedRaster {
   Crs crs;
 };
 
-std::optional<NamedRaster> named_raster(const std::string& file, const InputCrs& outlines) {
+std::optional<NamedRaster> named_raster(const std::string& file, const InputCrs& outlines, const Events& events) {
   if (file.empty()) return std::nullopt;
-  const std::optional<Crs> declared = read_raster_facts(file).crs;
+  const RasterFacts facts = read_raster_facts(file);
+  warn_of_unknown_unit(file, facts, events);
+  const std::optional<Crs>& declared = facts.crs;
   if (!declared) throw CrsError(file + ": has no coordinate reference system; write one into it, such as with gdal_edit.py -a_srs EPSG:25832+7837");
   const std::optional<Crs> named = with_heights_named(*declared, outlines);
   return NamedRaster{file, named, named.value_or(*declared)};
@@ -77,7 +81,7 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
   std::vector<InputCrs> outlines;
   for (std::size_t i = 0; i < input.files.size(); ++i) outlines.push_back(resolve_input_crs(prior_options, input.crs[i], input.files[i].path.string(), events));
   const InputCrs& first = outlines.front();
-  const std::optional<NamedRaster> terrain = named_raster(outline_options.terrain, first), surface = named_raster(outline_options.heights_from, first);
+  const std::optional<NamedRaster> terrain = named_raster(outline_options.terrain, first, events), surface = named_raster(outline_options.heights_from, first, events);
   std::vector<InputCrs> with_heights;
   for (const InputCrs& outline : outlines) with_heights.push_back(terrain ? heights_of(*terrain, outline) : InputCrs{outline.crs, outline.assumed_vertical, outline.file, "--terrain"});
   if (surface) with_heights.push_back(heights_of(*surface, first));

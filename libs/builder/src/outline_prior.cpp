@@ -13,7 +13,7 @@
 #include <priormap/geodesy/image_bounds.hpp>
 #include <priormap/prior/prior_writer.hpp>
 
-#include "impossible_heights.hpp"
+#include "raster_faults.hpp"
 #include "outline_crs.hpp"
 #include "outline_stages.hpp"
 

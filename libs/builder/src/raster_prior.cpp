@@ -24,7 +24,7 @@
 #include <priormap/sources/height_raster.hpp>
 #include <priormap/sources/raster_points.hpp>
 
-#include "impossible_heights.hpp"
+#include "raster_faults.hpp"
 
 namespace priormap {
 namespace {
@@ -63,6 +63,7 @@ std::vector<RasterInput> read_inputs(const std::vector<fs::path>& files, const P
   std::vector<RasterInput> inputs;
   for (const fs::path& file : files) {
     RasterFacts facts = read_raster_facts(file);
+    warn_of_unknown_unit(file, facts, events);
     InputCrs crs = resolve_input_crs(options, facts.crs, file.string(), events);
     inputs.push_back({file, "", std::move(facts), std::move(crs)});
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <fstream>
@@ -14,7 +15,7 @@
 #include <priormap/prior/prior_store.hpp>
 
 #include "../../sources/tests/raster_fixture.hpp"
-#include "impossible_heights.hpp"
+#include "raster_faults.hpp"
 
 namespace priormap {
 namespace {
@@ -314,6 +315,13 @@ TEST_F(RasterPriorTest, heights_in_another_unit_are_an_error_that_says_so) {
   } catch (const FormatError& error) {
     EXPECT_NE(std::string(error.what()).find("400 of the cells read hold values from 500000 to 500019"), std::string::npos) << error.what();
   }
+}
+
+TEST_F(RasterPriorTest, a_unit_that_is_none_of_length_is_told_of) {
+  RasterFixture fixture = hills(10, 10);
+  fixture.adjust = [](GDALDataset& d) { d.GetRasterBand(1)->SetUnitType("points"); };
+  build({write(fixture, "odd.tif")}, with_crs("EPSG:32632"), "prior");
+  EXPECT_TRUE(std::ranges::any_of(warnings_, [](const std::string& warning) { return warning.find("odd.tif: its heights are in 'points'") != std::string::npos; }));
 }
 
 TEST_F(RasterPriorTest, nothing_to_write_is_an_error_and_leaves_nothing) {

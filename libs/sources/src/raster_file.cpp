@@ -19,6 +19,7 @@
 
 #include "cell_set.hpp"
 #include "gdal_support.hpp"
+#include "height_unit.hpp"
 
 namespace priormap {
 namespace {
@@ -63,11 +64,12 @@ Eigen::Affine2d read_transform(GDALDataset& dataset, const std::filesystem::path
   return transform;
 }
 
-/// Metres per unit of undeclared heights that the band gives a unit other than the metre.
-std::optional<double> band_unit_m(const std::string& unit) {
-  if (unit == "ft" || unit == "foot" || unit == "feet") return 0.3048;
-  if (unit == "us-ft" || unit == "US survey foot" || unit == "sfoot" || unit == "ftUS") return 1200.0 / 3937.0;
-  return std::nullopt;
+/// Metres per unit that the band gives its heights, where that is other than the metre (a label by habit) and no vertical CRS of the file has the word: none counts
+/// in decimetres or less.
+std::optional<double> band_unit_m(const std::string& unit, bool has_vertical_crs) {
+  constexpr double decimetre = 0.1;
+  const std::optional<double> unit_m = length_unit_m(unit);
+  return unit_m == 1 || (has_vertical_crs && unit_m > decimetre) ? std::nullopt : unit_m;
 }
 
 /// DTED (MIL-PRF-89020B) states the error that 90 % of the heights keep, in whole metres; "NA" where unknown.
@@ -187,8 +189,8 @@ RasterFile::RasterFile(const std::filesystem::path& file, const std::optional<Cr
   offset_ = band.GetOffset();
   const std::optional<Crs>& crs = source ? source : facts_.crs;
   const double unit_m = crs ? crs->vertical_unit_m() : 1;
-  const bool is_declared = facts_.crs && facts_.crs->has_vertical();
-  if (const std::optional<double> own_unit_m = band_unit_m(band.GetUnitType()); own_unit_m && !is_declared) {
+  if (const std::string unit = band.GetUnitType(); !unit.empty() && !length_unit_m(unit)) facts_.unknown_height_unit = unit;
+  if (const std::optional<double> own_unit_m = band_unit_m(band.GetUnitType(), facts_.crs && facts_.crs->has_vertical())) {
     scale_ *= *own_unit_m / unit_m;
     offset_ *= *own_unit_m / unit_m;
   }

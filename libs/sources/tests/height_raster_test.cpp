@@ -217,6 +217,19 @@ TEST_F(HeightRasterTest, undeclared_heights_in_feet_become_metres) {
   EXPECT_NEAR(named.at(500003.5, 4999995.5).value(), 100 * 0.3048 / (1200.0 / 3937), 1e-9) << "feet of the file become those of the vertical CRS that the user names";
 }
 
+TEST_F(HeightRasterTest, undeclared_heights_in_any_unit_of_length_become_metres) {
+  const auto with_unit = [&](const std::string& unit, const std::string& crs = "EPSG:32632") {
+    return write({.crs = crs, .value = [](double, double) { return 350; }, .adjust = [&](GDALDataset& d) { d.GetRasterBand(1)->SetUnitType(unit.c_str()); }});
+  };
+  for (const auto& [unit, height_m] : {std::pair("cm", 3.5), {"dm", 35.0}, {"Millimeters", 0.35}, {"[m]", 350.0}, {"US survey foot", 350 * 1200.0 / 3937}, {"fathom", 350 * 1.8288}, {"", 350.0}, {"points", 350.0}}) {
+    const fs::path file = with_unit(unit);
+    EXPECT_NEAR(open(file).at(500003.5, 4999995.5).value(), height_m, 1e-9) << unit;
+    EXPECT_EQ(read_raster_facts(file).unknown_height_unit, std::string(unit) == "points" ? unit : "");
+  }
+  EXPECT_NEAR(open(with_unit("cm", "EPSG:32632+5773")).at(500003.5, 4999995.5).value(), 3.5, 1e-9) << "no vertical CRS counts in centimetres: the band's word adds to it";
+  EXPECT_NEAR(open(with_unit("ft", "EPSG:32632+5773")).at(500003.5, 4999995.5).value(), 350, 1e-9) << "the CRS has the word";
+}
+
 TEST_F(HeightRasterTest, south_up_and_rotated_rasters) {
   const HeightRaster south_up = open(write({.transform = {500000, 1, 0, 4999992, 0, 1}, .value = plane}, "south_up.tif"));
   EXPECT_NEAR(south_up.at(500003.5, 4999992 + 2.5).value(), plane(3, 2), 1e-6);

@@ -16,6 +16,7 @@ struct RasterFacts {
   std::optional<Crs> crs;          ///< none: the file declares none
   Bounds2 bounds;                  ///< in the file's own CRS
   double cell_x = 0, cell_y = 0;   ///< length of a cell's edges in the unit of the file's CRS
+  std::string unknown_height_unit;        ///< as the band names it, where that is no unit of length; its heights count as metres
   std::optional<double> height_sigma_m;   ///< from the vertical accuracy that DTED files, and copies of them, state (adr/0015)
 };
 
@@ -33,7 +34,7 @@ struct ImpossibleHeights {
 RasterFacts read_raster_facts(const std::filesystem::path& file);
 
 /// Heights of a raster asked at places in another CRS. Memory is bounded: cells are read in blocks and the least used are dropped.
-/// No data value, NaN, mask band, alpha, scale and offset of the file are respected; band 1 holds the heights; impossible ones are none.
+/// No data value, NaN, mask band, alpha, scale, offset and unit of the file are respected; band 1 holds the heights; impossible ones are none.
 /// One object per thread; copies share the open file.
 class HeightRaster {
  public:

@@ -1,4 +1,4 @@
-#include "impossible_heights.hpp"
+#include "raster_faults.hpp"
 
 #include <array>
 #include <charconv>
@@ -32,6 +32,11 @@ std::string text_of(const std::filesystem::path& file, const ImpossibleHeights& 
     text << "values from " << lowest << " to " << highest << ", which are no heights on Earth (-500 to 9000 m); they are left out. If they mean no data, let the file say so (gdal_translate -a_nodata);"
          << " if they are heights, name their unit: gdal_translate -a_scale 0.001 for millimetres, or a vertical CRS in feet with --source-crs";
   return text.str();
+}
+
+void warn_of_unknown_unit(const std::filesystem::path& file, const RasterFacts& facts, const Events& events) {
+  if (!facts.unknown_height_unit.empty())
+    events.warn(file.string() + ": its heights are in '" + facts.unknown_height_unit + "', which is no unit of length that priormap knows; taken as metres. If they are in another one, name it, such as gdal_edit.py -units cm FILE");
 }
 
 }  // namespace priormap
