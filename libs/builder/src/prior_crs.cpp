@@ -174,7 +174,8 @@ Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& 
   if (const auto vertical = common_vertical(inputs)) return with_heights_in_metres(asked, *vertical);
   if (!inputs.empty()) {
     const std::string better = inputs[0].height_option.empty() ? "" : "give " + inputs[0].height_option + " with declared heights, or ";
-    events.warn(inputs[0].file + ": heights are undeclared and stay as they are (\"vertical\": null); " + better + "--assume-vertical V, such as EPSG:7837, says in which vertical CRS they are");
+    const std::string in_metres = inputs[0].crs.horizontal_unit_m() != 1 ? ", taken as metres though x and y are not" : "";
+    events.warn(inputs[0].file + ": heights are undeclared and stay as they are (\"vertical\": null)" + in_metres + "; " + better + "--assume-vertical V, such as EPSG:7837, says in which vertical CRS they are");
   }
   return asked;
 }
