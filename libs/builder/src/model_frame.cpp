@@ -1,5 +1,8 @@
 #include "model_frame.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 
 #include <priormap/core/error.hpp>
@@ -53,17 +56,22 @@ Fit fit(const Crs& crs, const Eigen::Vector3d& place) {
   constexpr double border_deg = 1;
   const std::optional<GeoPoint> lon_lat = reach(crs, place);
   if (!lon_lat) return Fit::none;
-  const std::optional<AreaOfUse> area = crs.area_of_use();
+  const std::optional<LonLatArea> area = crs.area_of_use();
   return !area || area->degrees_outside(*lon_lat) <= border_deg ? Fit::in_area : Fit::reached;
+}
+
+/// The forms that mean the authority's order of axes.
+bool is_urn_or_url(std::string srs_name) {
+  std::ranges::transform(srs_name, srs_name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::ranges::any_of(std::array{"urn:ogc:", "urn:x-ogc:", "urn:epsg:", "http"}, [&](const char* start) { return srs_name.starts_with(start); });
 }
 
 /// Data may follow the authority's axis order: the URN and URL forms of srsName say so. Files that name a CRS that way and still write the
 /// easting first are common, and so is the reverse: the order that fits the CRS better counts, and the form of the name where both fit alike.
 bool northing_comes_first(const std::string& srs_name, const Crs& crs, const Eigen::Vector3d& place) {
   if (!crs.authority_north_first()) return false;
-  const bool by_name = srs_name.starts_with("urn:ogc:") || srs_name.starts_with("http");
   const Fit straight = fit(crs.horizontal(), place), turned = fit(crs.horizontal(), swapped(place));
-  return straight == turned ? by_name : turned > straight;
+  return straight == turned ? is_urn_or_url(srs_name) : turned > straight;
 }
 
 }  // namespace

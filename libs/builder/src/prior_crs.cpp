@@ -68,7 +68,7 @@ void check_projected_in_metres(const Crs& crs, const std::optional<GeoPoint>& mi
 constexpr double most_distortion = 0.01, border_deg = 0.25;
 
 double degrees_outside(const Crs& crs, const GeoPoint& place) {
-  const std::optional<AreaOfUse> area = crs.area_of_use();
+  const std::optional<LonLatArea> area = crs.area_of_use();
   return area ? area->degrees_outside(place) : 0;
 }
 
@@ -96,7 +96,7 @@ void check_fits(const Crs& asked, const GeoPoint& place, const Events& events) {
     throw CrsError(name + " " + how.str() + " where the data lie (" + where.str() + ")" + fitting_zone(asked, place));
   }
   if (degrees_outside(asked, place) <= border_deg) return;
-  const std::optional<AreaOfUse> area = asked.area_of_use();
+  const std::optional<LonLatArea> area = asked.area_of_use();
   events.warn(name + " is meant for longitudes " + degrees_text(area->west_deg, area->east_deg) + " and latitudes " + degrees_text(area->south_deg, area->north_deg) +
               ", the data lie at " + where.str() + fitting_zone(asked, place));
 }

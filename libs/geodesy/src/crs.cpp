@@ -1,5 +1,6 @@
 #include <priormap/geodesy/crs.hpp>
 
+#include <Eigen/SVD>
 #include <GeographicLib/UTMUPS.hpp>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <priormap/core/error.hpp>
 
 #include "crs_text.hpp"
+#include "ellipsoid.hpp"
 #include "proj_context.hpp"
 
 namespace priormap {
@@ -187,18 +189,28 @@ std::shared_ptr<const Crs::Impl> describe(const ProjContext& context, const PJ* 
   return impl;
 }
 
+/// The CRS's own projection, from longitudes (from its prime meridian) and latitudes in degrees. PROJ's factors know neither other meridians nor other units.
+ProjObject from_degrees_of_its_datum(const ProjContext& context, const PJ* projected) {
+  const ProjObject base(proj_crs_get_geodetic_crs(context, projected)), datum(base ? proj_crs_get_datum_forced(context, base.get()) : nullptr);
+  const ProjObject degrees(proj_create_ellipsoidal_2D_cs(context, PJ_ELLPS2D_LONGITUDE_LATITUDE, "degree", proj_torad(1)));
+  const ProjObject geographic(datum ? proj_create_geographic_crs_from_datum(context, "in degrees", datum.get(), degrees.get()) : nullptr);
+  const ProjObject east_first(proj_normalize_for_visualization(context, projected));
+  return ProjObject(geographic && east_first ? proj_create_crs_to_crs_from_pj(context, geographic.get(), east_first.get(), nullptr, nullptr) : nullptr);
+}
+
+double prime_meridian_deg(const ProjContext& context, const PJ* projected) {
+  const ProjObject base(proj_crs_get_geodetic_crs(context, projected)), meridian(base ? proj_get_prime_meridian(context, base.get()) : nullptr);
+  double longitude = 0, unit_rad = 0;
+  if (!meridian || !proj_prime_meridian_get_parameters(context, meridian.get(), &longitude, &unit_rad, nullptr)) return 0;
+  return proj_todeg(longitude * unit_rad);
+}
+
 [[noreturn]] void fail_unreadable(const std::string& text, const ProjContext& context) {
   const std::string cause = context.last_message();
   throw CrsError("'" + shortened(text) + "' is no coordinate reference system that PROJ knows" + (cause.empty() ? "" : " (" + cause + ")"));
 }
 
 }  // namespace
-
-double AreaOfUse::degrees_outside(const GeoPoint& place) const {
-  const double width = east_deg < west_deg ? east_deg + 360 - west_deg : east_deg - west_deg;
-  const double east_of_west = std::remainder(place.lon_deg - west_deg - width / 2, 360) + width / 2;   // from the middle of the area, either way
-  return std::max({0.0, -east_of_west, east_of_west - width, south_deg - place.lat_deg, place.lat_deg - north_deg});
-}
 
 Crs::Crs(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
@@ -290,10 +302,10 @@ Crs Crs::geographic_base() const {
   return impl_->geographic_base == impl_->name ? *this : parse(impl_->geographic_base);
 }
 
-std::optional<AreaOfUse> Crs::area_of_use() const {
+std::optional<LonLatArea> Crs::area_of_use() const {
   const ProjContext context;
   const ProjObject crs = create_crs(context, horizontal().name());
-  AreaOfUse area;
+  LonLatArea area;
   const char* name = nullptr;
   if (!crs || !proj_get_area_of_use(context, crs.get(), &area.west_deg, &area.south_deg, &area.east_deg, &area.north_deg, &name)) return std::nullopt;
   constexpr double unknown = -1000;   // PROJ's word for it
@@ -301,13 +313,26 @@ std::optional<AreaOfUse> Crs::area_of_use() const {
 }
 
 double Crs::length_distortion(const GeoPoint& place) const {
+  const Crs flat = horizontal();
   const ProjContext context;
-  const ProjObject stated = create_crs(context, horizontal().name());
-  const ProjObject crs(proj_normalize_for_visualization(context, stated.get()));   // PROJ knows no factors of northing-first systems
-  proj_errno_reset(crs.get());
-  const PJ_FACTORS factors = proj_factors(crs.get(), proj_coord(proj_torad(place.lon_deg), proj_torad(place.lat_deg), 0, 0));
-  if (proj_errno(crs.get()) != 0 || !(factors.tissot_semiminor > 0)) return std::numeric_limits<double>::infinity();
-  return std::max(std::abs(factors.tissot_semimajor - 1), std::abs(factors.tissot_semiminor - 1));
+  const ProjObject stated = create_crs(context, flat.name());
+  const ProjObject from_degrees = from_degrees_of_its_datum(context, stated.get());
+  if (!from_degrees) return std::numeric_limits<double>::infinity();
+  const double lon_deg = place.lon_deg - prime_meridian_deg(context, stated.get());
+  const auto image = [&](double north_deg, double east_deg) {
+    const PJ_COORD p = proj_trans(from_degrees.get(), PJ_FWD, proj_coord(lon_deg + east_deg, place.lat_deg + north_deg, 0, 0));
+    return Eigen::Vector2d(p.xy.x, p.xy.y);
+  };
+  constexpr double step_deg = 1e-4;
+  const Eigen::Vector2d radii_m = curvature_radii_m(flat, place.lat_deg);
+  Eigen::Matrix2d grid_from_ground;
+  grid_from_ground.col(0) = (image(0, step_deg) - image(0, -step_deg)) / (radii_m.y() * std::cos(proj_torad(place.lat_deg)));
+  grid_from_ground.col(1) = (image(step_deg, 0) - image(-step_deg, 0)) / radii_m.x();
+  grid_from_ground *= horizontal_unit_m() / (2 * proj_torad(step_deg));
+  constexpr double out_of_reach = 10;   // where images jump
+  if (!(grid_from_ground.norm() < out_of_reach)) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector2d scales = grid_from_ground.jacobiSvd().singularValues();   // the axes of Tissot's indicatrix
+  return std::max(std::abs(scales[0] - 1), std::abs(scales[1] - 1));
 }
 
 bool Crs::equivalent_to(const Crs& other) const {

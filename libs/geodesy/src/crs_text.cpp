@@ -24,6 +24,11 @@ std::string lower(std::string text) {
   return text;
 }
 
+std::string upper(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
 bool is_number(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
@@ -42,6 +47,12 @@ std::optional<std::string> legacy_gml_name(const std::string& text) {
         "urn:epsg:projectedcrs:", "urn:epsg:compoundcrs:", "urn:epsg:verticalcrs:", "epsg::", "+init=epsg:"})
     if (auto code = epsg_after(text, prefix)) return code;
   return std::nullopt;
+}
+
+/// "CRS:84" of WMS 1.3 (OGC 06-042, B.3), longitude first.
+std::optional<std::string> wms_name(const std::string& text) {
+  const std::string name = upper(text);
+  return name == "CRS:84" || name == "CRS:83" || name == "CRS:27" ? std::optional("OGC:CRS" + name.substr(4)) : std::nullopt;
 }
 
 // Coordinate reference systems of GeoInfoDok (AdV), the German survey's exchange model, by their EPSG codes.
@@ -107,11 +118,6 @@ std::pair<std::string, std::string> split(const std::string& text, char separato
   return {text.substr(0, place), text.substr(place + 1)};
 }
 
-std::string upper(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text;
-}
-
 bool is_word(const std::string& text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '-'; });
 }
@@ -133,6 +139,9 @@ std::string proj_definition(const std::string& given) {
   if (text.empty()) throw CrsError("no coordinate reference system is given; give one such as EPSG:25832+7837");
   const std::string adv = "urn:adv:crs:";
   if (lower(text).starts_with(adv)) return adv_name(text.substr(adv.size()));
+  if (const auto ogc = wms_name(text)) return *ogc;
+  const std::string older = "urn:x-ogc:";
+  if (lower(text).starts_with(older)) return "urn:ogc:" + text.substr(older.size());
   if (auto code = legacy_gml_name(text)) return *code;
   if (text.starts_with('+')) return proj_string(text);
   if (text.starts_with('{') || text.find('[') != std::string::npos) return text;

@@ -154,11 +154,16 @@ struct Transformer::Impl {
     pipeline.reset(proj_create(context, operation.proj_string.c_str()));
     if (!pipeline) throw CrsError("no exact transformation from " + between(source, target) + ": " + context.last_message());
   }
-  Impl(const Impl& other) : Impl(other.source, other.target, other.operation, other.heights) {}
+  Impl(const Impl& other) : Impl(other.source, other.target, other.operation, other.heights) {
+    middle_of_source_deg = other.middle_of_source_deg;
+    middle_of_target_deg = other.middle_of_target_deg;
+  }
 
   void apply(PJ_DIRECTION direction, std::span<Eigen::Vector3d> points) const {
     if (points.empty()) return;
     if (pipeline) run_pipeline(direction, points);
+    if (const std::optional<double>& middle_deg = direction == PJ_FWD ? middle_of_target_deg : middle_of_source_deg)
+      for (Eigen::Vector3d& point : points) point.x() = *middle_deg + std::remainder(point.x() - *middle_deg, 360);
     if (heights.factor == 1) return;
     const double factor = direction == PJ_FWD ? heights.factor : 1 / heights.factor;
     for (Eigen::Vector3d& point : points) point.z() *= factor;
@@ -178,6 +183,7 @@ struct Transformer::Impl {
   Crs source, target;
   CoordinateOperation operation;
   HeightRule heights;
+  std::optional<double> middle_of_source_deg, middle_of_target_deg;   ///< around which longitudes that come out lie
   ProjContext context;
   ProjObject pipeline;
 };
@@ -189,6 +195,12 @@ Transformer::Transformer(const Crs& source, const Crs& target, const std::option
   const Crs from = rule.by_operation ? source : source.horizontal(), to = rule.by_operation ? target : target.horizontal();
   const CoordinateOperation operation = from.equivalent_to(to) ? identity_operation() : choose_operation(from, to, area);
   impl_ = std::make_unique<Impl>(source, target, operation, rule);
+}
+
+Transformer::Transformer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Transformer Transformer::by_operation(const Crs& source, const Crs& target, const std::string& proj_string) {
+  return Transformer(std::make_unique<Impl>(source.horizontal(), target.horizontal(), CoordinateOperation{"", proj_string, {}, std::nullopt, {}}, HeightRule{}));
 }
 
 Transformer::Transformer(const Transformer& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
@@ -213,6 +225,14 @@ Eigen::Vector3d Transformer::inverse(const Eigen::Vector3d& point) const {
   Eigen::Vector3d result = point;
   inverse(std::span(&result, 1));
   return result;
+}
+
+void Transformer::keep_source_longitudes_around(double lon_deg) {
+  if (impl_->source.is_geographic()) impl_->middle_of_source_deg = lon_deg;
+}
+
+void Transformer::keep_target_longitudes_around(double lon_deg) {
+  if (impl_->target.is_geographic()) impl_->middle_of_target_deg = lon_deg;
 }
 
 const Crs& Transformer::source() const { return impl_->source; }

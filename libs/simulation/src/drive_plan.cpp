@@ -43,7 +43,7 @@ MapFrame frame_at_origin(const RouteOptions& route) {
   if (route.origin_lon_lat.size() != 2) throw UsageError("--origin takes LON,LAT");
   const double lon_deg = route.origin_lon_lat[0], lat_deg = route.origin_lon_lat[1];
   if (std::abs(lat_deg) > 90) throw UsageError("--origin: longitude lies in [-180, 180], latitude in [-90, 90], in this order");
-  const std::optional<AreaOfUse> area = projected_crs(route).area_of_use();
+  const std::optional<LonLatArea> area = projected_crs(route).area_of_use();
   if (area && area->degrees_outside({lat_deg, lon_deg, 0}) > border_deg) {
     const bool swapped_fits = area->degrees_outside({lon_deg, lat_deg, 0}) == 0;
     throw UsageError("--origin lies outside of " + route.crs + "; " + (swapped_fits ? "swap its numbers: it takes the longitude first" : "name the CRS of that place with --crs"));

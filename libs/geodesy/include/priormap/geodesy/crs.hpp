@@ -4,15 +4,9 @@
 #include <string>
 
 #include <priormap/geodesy/geo_point.hpp>
+#include <priormap/geodesy/lon_lat_area.hpp>
 
 namespace priormap {
-
-/// Where the authority means a CRS to be used [degrees]; west > east where it crosses the antimeridian.
-struct AreaOfUse {
-  double west_deg = 0, south_deg = 0, east_deg = 0, north_deg = 0;
-  /// How far a place lies outside, along the meridian or the parallel; 0 inside.
-  double degrees_outside(const GeoPoint& place) const;
-};
 
 /// A coordinate reference system (ISO 19111): horizontal, optionally with heights. Axis order inside priormap is
 /// always east, north, up (longitude, latitude for geographic systems), angles in degrees at this boundary, lengths in the
@@ -21,7 +15,7 @@ class Crs {
  public:
   /// From any of: "EPSG:25832", "EPSG:25832+7837", WKT1/WKT2, PROJJSON, PROJ strings with +type=crs or without,
   /// "urn:ogc:def:crs:EPSG::25832", "urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837", "http://www.opengis.net/def/crs/EPSG/0/25832",
-  /// "https://www.opengis.net/def/crs/EPSG/0/7415", "http://www.opengis.net/gml/srs/epsg.xml#25832",
+  /// "https://www.opengis.net/def/crs/EPSG/0/7415", "http://www.opengis.net/gml/srs/epsg.xml#25832", "urn:x-ogc:def:crs:EPSG:25832", "CRS:84",
   /// "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH" (GeoInfoDok).
   /// Names such as "CH1903" are refused: they mean different systems to different people.
   /// @throws CrsError naming the text when it is none of these, or its axes point neither east and north nor to a pole.
@@ -56,7 +50,7 @@ class Crs {
   Crs with_vertical(const Crs& vertical) const;
   Crs geographic_base() const;                     ///< the 2D geographic CRS it is defined on
 
-  std::optional<AreaOfUse> area_of_use() const;    ///< of the horizontal part; none where the authority states none
+  std::optional<LonLatArea> area_of_use() const;    ///< where the authority means the horizontal part to be used; none where it states nothing
   /// Largest relative error of a short length on the grid of a projected CRS against the ellipsoid: 0.0004 in the middle of a UTM zone;
   /// infinity where the projection does not reach.
   double length_distortion(const GeoPoint& place) const;

@@ -20,11 +20,6 @@ struct CoordinateOperation {
   std::vector<std::string> better_grids;
 };
 
-/// Geographic rectangle [degrees]; west > east where it crosses the antimeridian.
-struct LonLatArea {
-  double west_deg = 0, south_deg = 0, east_deg = 0, north_deg = 0;
-};
-
 /// Coordinates from one CRS to another, whole arrays at once. One object per thread (PROJ contexts are not shared);
 /// copies make their own context and are cheap.
 ///
@@ -39,6 +34,9 @@ class Transformer {
   /// @throws CrsError when no exact operation exists. The message names the missing grid where one is missing, or says that
   /// no operation is known between the two, or that the source's heights are undeclared.
   Transformer(const Crs& source, const Crs& target, const std::optional<LonLatArea>& area = std::nullopt);
+  /// By an operation that another Transformer between the horizontal parts of the two used; heights pass through.
+  /// @param proj_string  as CoordinateOperation has it. @throws CrsError when PROJ cannot read it
+  static Transformer by_operation(const Crs& source, const Crs& target, const std::string& proj_string);
   Transformer(const Transformer& other);
   Transformer& operator=(const Transformer& other);
   Transformer(Transformer&&) noexcept;
@@ -52,6 +50,11 @@ class Transformer {
   Eigen::Vector3d forward(const Eigen::Vector3d& point) const;
   Eigen::Vector3d inverse(const Eigen::Vector3d& point) const;
 
+  /// From now on longitudes that come out lie within 180 degrees of this one, for data across the antimeridian or counted from 0 to 360; without effect on a CRS that
+  /// is not geographic.
+  void keep_source_longitudes_around(double lon_deg);
+  void keep_target_longitudes_around(double lon_deg);
+
   const Crs& source() const;
   const Crs& target() const;
   const CoordinateOperation& operation() const;
@@ -61,6 +64,7 @@ class Transformer {
 
  private:
   struct Impl;
+  explicit Transformer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 
