@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <priormap/prior/feature.hpp>
+#include <priormap/prior/prior_manifest.hpp>
 
 #include <priormap/core/spill_file.hpp>
 
@@ -32,11 +33,11 @@ class FeatureSpool {
   struct Written {
     std::vector<std::uint32_t> index_of_number;   ///< position in the file, in order of (source, id)
     std::uint64_t count = 0;
-    std::string crs;
+    std::string crs, operation;   ///< as PriorManifest's
     std::string sha256;
   };
-  /// Writes features.geojsonl. @throws IoError
-  Written write(const std::filesystem::path& file, const std::string& prior_crs, int threads) const;
+  /// Writes features.geojsonl. @param prior  its CRS and sources. @throws IoError
+  Written write(const std::filesystem::path& file, const PriorManifest& prior, int threads) const;
 
  private:
   struct Item {

@@ -246,12 +246,13 @@ void PriorAssembly::close_tile(TileKey key, const TileFilter& filter) {
 
 PriorManifest PriorAssembly::finish(int threads, const Events& events, const TileFilter& filter) {
   const std::filesystem::path& folder = directory_.temporary_path();
-  const FeatureSpool::Written features = features_.write(folder / features_file_name, manifest_.crs, threads);
+  manifest_.sources = ordered(std::move(manifest_.sources), source_index_);
+  const FeatureSpool::Written features = features_.write(folder / features_file_name, manifest_, threads);
   feature_index_ = features.index_of_number;
   manifest_.num_features = features.count;
   manifest_.features_crs = features.crs;
+  manifest_.features_operation = features.operation;
   manifest_.features_sha256 = features.sha256;
-  manifest_.sources = ordered(std::move(manifest_.sources), source_index_);
 
   const std::vector<TileKey> keys = tiles_.keys();
   std::atomic<std::size_t> done = 0;

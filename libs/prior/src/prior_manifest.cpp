@@ -95,6 +95,7 @@ PriorManifest manifest_from(const nlohmann::json& json) {
   manifest.tiles = {json["tiles"]["sha256"], json["tiles"]["head_sha256"]};
   manifest.num_features = json["features"]["count"];
   manifest.features_crs = empty_if_null(json["features"]["crs"]);
+  manifest.features_operation = json["features"].value("operation", "");
   manifest.features_sha256 = json["features"]["sha256"];
   manifest.generator = json["generator"];
   return manifest;
@@ -132,6 +133,9 @@ std::string manifest_json(const PriorManifest& manifest) {
   if (manifest.num_points != 0) bounds = {{"min", to_json(manifest.min)}, {"max", to_json(manifest.max)}};
   Json sources = Json::array();
   for (const PriorSource& source : manifest.sources) sources.push_back(to_json(source));
+  Json features = {{"count", manifest.num_features}, {"crs", null_if_empty(manifest.features_crs)}};
+  if (!manifest.features_operation.empty()) features["operation"] = manifest.features_operation;
+  features["sha256"] = manifest.features_sha256;
   const Json json = {
       {"format", "priormap-prior"},
       {"version", 1},
@@ -144,10 +148,7 @@ std::string manifest_json(const PriorManifest& manifest) {
       {"bounds", std::move(bounds)},
       {"tiles",
        {{"count", manifest.num_tiles}, {"sha256", manifest.tiles.file_sha256}, {"head_sha256", manifest.tiles.head_sha256}}},
-      {"features",
-       {{"count", manifest.num_features},
-        {"crs", null_if_empty(manifest.features_crs)},
-        {"sha256", manifest.features_sha256}}},
+      {"features", std::move(features)},
       {"sources", std::move(sources)},
   };
   // Names and attributions come from files: what is no UTF-8 is replaced rather than refused.

@@ -135,7 +135,7 @@ void PriorStore::for_each_block(TileKey key, std::size_t points_a_block, const s
 }
 
 void PriorStore::for_each_feature(const std::function<void(std::uint32_t, const Feature&)>& consume) const {
-  read_feature_lines(impl_->directory / features_file_name, OutlineFrame(impl_->manifest.crs, impl_->manifest.features_crs), consume);
+  read_feature_lines(impl_->directory / features_file_name, OutlineFrame(impl_->manifest.crs, impl_->manifest.features_crs, impl_->manifest.features_operation), consume);
 }
 
 std::vector<Feature> PriorStore::features() const {

@@ -79,6 +79,34 @@ TEST(PriorStore, OutlinesInTheFileAreLongitudesAndLatitudes) {
   EXPECT_EQ(PriorStore(folder / "prior").manifest().features_crs, "EPSG:4326");
 }
 
+TEST(PriorStore, OutlinesGoToLongitudesAndLatitudesByTheOperationThatTheirSourceCameBy) {
+  const Crs lon_lat = Crs::parse("EPSG:4326"), krovak = Crs::parse("EPSG:5514");
+  const Eigen::Vector3d place(14.42, 50.08, 0);
+  const Transformer czech(lon_lat, krovak, LonLatArea{14.4, 50, 14.5, 50.1});
+  ASSERT_GT((Transformer(lon_lat, krovak).forward(place) - czech.forward(place)).norm(), 1) << "PROJ ranks another operation first without the area";
+  PriorSource source = test_source("osm-1");
+  source.operation = czech.operation();
+  const TestFolder folder;
+  PriorWriter writer(folder / "prior", test_manifest({source}, 200, "EPSG:5514"), Overwrite::refuse);
+  const Eigen::Vector2d corner = czech.forward(place).head<2>().unaryExpr([](double v) { return std::round(v * 1000) / 1000; });
+  Feature feature;
+  feature.source = "osm-1";
+  feature.id = "way/1";
+  feature.outline = {{{corner, corner + Eigen::Vector2d(10, 0), corner + Eigen::Vector2d(0, 10)}}};
+  PointCloud points = random_cloud(1, 1, 1, {corner.x(), corner.y(), 0});
+  points.feature = {writer.add_feature(feature)};
+  writer.add(points);
+  writer.finish(1, {});
+
+  const std::string line = file_text(folder / "prior/features.geojsonl"), ring = "\"coordinates\":[[[";
+  const std::size_t start = line.find(ring) + ring.size();
+  ASSERT_LT(start, line.size()) << line;
+  EXPECT_NEAR(std::stod(line.substr(start)), place.x(), 2e-8);
+  EXPECT_NEAR(std::stod(line.substr(line.find(',', start) + 1)), place.y(), 2e-8);
+  EXPECT_EQ(PriorStore(folder / "prior").manifest().features_operation, czech.operation().proj_string);
+  EXPECT_NEAR((PriorStore(folder / "prior").features()[0].outline[0][0][0] - corner).norm(), 0, 0.005) << "PROJ's Helmert transformations there and back differ by millimetres";
+}
+
 TEST(PriorStore, ManyThreadsReadAtOnce) {
   const TestFolder folder;
   write_test_prior(folder / "prior");

@@ -40,6 +40,7 @@ struct PriorManifest {
   std::uint64_t num_tiles = 0;
   TileIndexDigest tiles;                 ///< of tiles.idx
   std::string features_crs;              ///< of the geometry in features.geojsonl: "EPSG:4326" where an operation to it is known
+  std::string features_operation;        ///< PROJ pipeline from there to `crs`, where it is not the one that PROJ ranks first; else empty
   std::string features_sha256;           ///< of features.geojsonl
   std::string generator;                 ///< "osm2prior 0.1.0"
 };
