@@ -82,7 +82,7 @@ ModelFrames::ModelFrames(const PriorOptions& options, const BuildingModel& first
   if (northing_comes_first(first.srs_name, input.crs, place)) place = swapped(place);
   const std::optional<GeoPoint> middle = reach(input.crs.horizontal(), place);
   if (!middle) throw CrsError(file + ": its coordinates lie out of reach of " + input.crs.human_name() + "; name their CRS with --source-crs");
-  prior_ = resolve_prior_crs(options, {input}, *middle, events);
+  prior_ = resolve_prior_crs(options, {input}, LonLatArea{middle->lon_deg, middle->lat_deg, middle->lon_deg, middle->lat_deg}, events);
   first_ = std::move(input);
 }
 

@@ -39,30 +39,45 @@ InputCrs heights_of(const NamedRaster& raster, const InputCrs& outlines) {
   return {raster.crs.vertical() ? outlines.crs.horizontal().with_vertical(raster.crs) : raster.crs, "", raster.file};
 }
 
+/// Around places, by x as it is and by x counted eastward from 0: of longitudes that cross the antimeridian the second is narrower.
+struct PlaceBounds {
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  Bounds2 as_they_are{infinity, infinity, -infinity, -infinity}, eastward = as_they_are;
+
+  void extend(const Eigen::Vector2d& p) {
+    extend(as_they_are, p);
+    extend(eastward, {p.x() < 0 ? p.x() + 360 : p.x(), p.y()});
+  }
+  Bounds2 of(const Crs& crs) const {
+    const bool crosses = crs.is_geographic() && eastward.max_x - eastward.min_x < as_they_are.max_x - as_they_are.min_x;
+    return crosses ? eastward : as_they_are;
+  }
+
+ private:
+  static void extend(Bounds2& b, const Eigen::Vector2d& p) {
+    b = {std::min(b.min_x, p.x()), std::min(b.min_y, p.y()), std::max(b.max_x, p.x()), std::max(b.max_y, p.y())};
+  }
+};
+
 /// Of the footprints of each file, in its own CRS; without extent for a file without any.
-std::vector<Bounds2> bounds_by_file(const OutlineInput& input) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::vector<Bounds2> bounds(input.files.size(), {infinity, infinity, -infinity, -infinity});
+std::vector<PlaceBounds> bounds_by_file(const OutlineInput& input) {
+  std::vector<PlaceBounds> bounds(input.files.size());
   for (const Footprint& footprint : input.footprints)
     for (const Ring2& ring : footprint.rings)
-      for (const Eigen::Vector2d& p : ring) {
-        Bounds2& b = bounds[footprint.file];
-        b = {std::min(b.min_x, p.x()), std::min(b.min_y, p.y()), std::max(b.max_x, p.x()), std::max(b.max_y, p.y())};
-      }
+      for (const Eigen::Vector2d& p : ring) bounds[footprint.file].extend(p);
   return bounds;
 }
 
-LonLatArea lon_lat_area(const std::vector<Bounds2>& bounds, const std::vector<InputCrs>& outlines) {
-  LonLatArea area{180, 90, -180, -90};
+std::optional<LonLatArea> lon_lat_area(const std::vector<PlaceBounds>& bounds, const std::vector<InputCrs>& outlines) {
+  std::optional<LonLatArea> all;
   for (std::size_t i = 0; i < bounds.size(); ++i) {
-    if (bounds[i].empty()) continue;
-    const Transformer to_lon_lat(outlines[i].crs.horizontal(), Crs::parse("EPSG:4326"));
-    for (const Eigen::Vector3d& corner : {to_lon_lat.forward({bounds[i].min_x, bounds[i].min_y, 0}), to_lon_lat.forward({bounds[i].max_x, bounds[i].max_y, 0})}) {
-      if (!corner.allFinite()) throw CrsError(outlines[i].file + ": its coordinates lie outside the domain of " + outlines[i].crs.name() + "; name the right CRS with --source-crs");
-      area = {std::min(area.west_deg, corner.x()), std::min(area.south_deg, corner.y()), std::max(area.east_deg, corner.x()), std::max(area.north_deg, corner.y())};
-    }
+    const Bounds2 own = bounds[i].of(outlines[i].crs);
+    if (own.empty()) continue;
+    const std::optional<LonLatArea> area = priormap::lon_lat_area(own, outlines[i].crs);
+    if (!area) throw CrsError(outlines[i].file + ": its coordinates lie outside the domain of " + outlines[i].crs.name() + "; name the right CRS with --source-crs");
+    all = all ? united(*all, *area) : *area;
   }
-  return area;
+  return all;
 }
 
 std::optional<Transformer> constant_to_prior(const InputCrs& outlines, const Crs& prior) {
@@ -86,10 +101,8 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
   for (const InputCrs& outline : outlines) with_heights.push_back(terrain ? heights_of(*terrain, outline) : InputCrs{outline.crs, outline.assumed_vertical, outline.file, "--terrain"});
   if (surface) with_heights.push_back(heights_of(*surface, first));
 
-  const LonLatArea area = lon_lat_area(bounds_by_file(input), outlines);
-  std::optional<GeoPoint> middle;
-  if (area.west_deg <= area.east_deg) middle = GeoPoint{0.5 * (area.south_deg + area.north_deg), 0.5 * (area.west_deg + area.east_deg), 0};
-  const Crs prior = resolve_prior_crs(prior_options, with_heights, middle, events);
+  const std::optional<LonLatArea> area = lon_lat_area(bounds_by_file(input), outlines);
+  const Crs prior = resolve_prior_crs(prior_options, with_heights, area, events);
   if (!ground_given) events.warn("the ground under the buildings is taken as 0 m; give --terrain or --ground-height");
 
   std::optional<HeightRaster> terrain_heights, surface_heights;

@@ -14,7 +14,7 @@ namespace priormap {
 struct OutlineFrames {
   std::vector<Transformer> prior_from_outlines;   ///< horizontal, by file
   Crs prior;
-  LonLatArea area;                                ///< of all outlines; west of east only where there is none
+  std::optional<LonLatArea> area;                 ///< of all outlines; none where there is none
   std::string assumed_vertical;
   GroundModel ground;
   std::optional<HeightRaster> surface;

@@ -87,7 +87,10 @@ void warn_of_impossible_heights(const OutlineFrames& frames, const OutlineOption
 
 std::string degrees_text(const Bounds2& b) { return (std::ostringstream() << std::setprecision(6) << b.min_x << ',' << b.min_y << ',' << b.max_x << ',' << b.max_y).str(); }
 
-Bounds2 lon_lat_bounds(const OutlineFrames& frames) { return {frames.area.west_deg, frames.area.south_deg, frames.area.east_deg, frames.area.north_deg}; }
+Bounds2 lon_lat_bounds(const OutlineFrames& frames) {
+  const LonLatArea area = frames.area.value_or(LonLatArea{180, 90, -180, -90});
+  return {area.west_deg, area.south_deg, area.east_deg, area.north_deg};
+}
 
 [[noreturn]] void refuse_terrain_elsewhere(const OutlineInput& input, const OutlineFrames& frames, const std::string& terrain) {
   const auto image = image_bounds(read_raster_facts(terrain).bounds, Transformer(frames.ground.terrain()->source().horizontal(), Crs::parse("EPSG:4326")));

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <iterator>
+#include <span>
 #include <sstream>
 #include <utility>
 
 #include <priormap/core/error.hpp>
 #include <priormap/geodesy/option_crs.hpp>
-#include <priormap/geodesy/transformer.hpp>
+#include <priormap/geodesy/tile_grid.hpp>
 
 namespace priormap {
 namespace {
@@ -72,33 +74,74 @@ double degrees_outside(const Crs& crs, const GeoPoint& place) {
   return area ? area->degrees_outside(place) : 0;
 }
 
-/// Of the inputs' middle and that of --bbox, which may take a corner of them, the one that fits the CRS better.
-GeoPoint best_place(const Crs& crs, const PriorOptions& options, const GeoPoint& middle) {
-  if (options.bbox.empty()) return middle;
-  const std::vector<double>& b = options.bbox;
-  const Transformer to_lon_lat(horizontal_option_crs("--bbox-crs", options.bbox_crs), Crs::parse("EPSG:4326"));
-  const Eigen::Vector3d p = to_lon_lat.forward({0.5 * (b[0] + b[2]), 0.5 * (b[1] + b[3]), 0});
-  if (!p.allFinite()) return middle;
-  const GeoPoint middle_of_box{p.y(), p.x(), 0};
-  const auto misfit = [&](const GeoPoint& place) { return std::pair(crs.length_distortion(place) > most_distortion, degrees_outside(crs, place)); };
-  return misfit(middle_of_box) < misfit(middle) ? middle_of_box : middle;
+std::string text_of(const GeoPoint& place) {
+  return (std::ostringstream() << std::fixed << std::setprecision(3) << "longitude " << place.lon_deg << ", latitude " << place.lat_deg).str();
 }
 
-/// A CRS that is asked for where it does not belong is a slip: mostly the wrong zone. Neighbouring zones are in use side by side, so
-/// that is said and done as asked; where a metre of the grid is no metre any more, spacing and sigmas would be wrong.
-void check_fits(const Crs& asked, const GeoPoint& place, const Events& events) {
-  std::ostringstream where;
-  where << std::fixed << std::setprecision(3) << "longitude " << place.lon_deg << ", latitude " << place.lat_deg;
-  const std::string name = "--crs " + asked.name() + " (" + asked.horizontal().human_name() + ")";
-  if (const double distortion = asked.length_distortion(place); !(distortion <= most_distortion)) {
-    std::ostringstream how;
-    if (std::isfinite(distortion)) how << "makes lengths wrong by " << std::setprecision(2) << 100 * distortion << " %"; else how << "does not reach";
-    throw CrsError(name + " " + how.str() + " where the data lie (" + where.str() + ")" + fitting_zone(asked, place));
+/// How wrong lengths on the grid are at a place.
+struct Distortion {
+  double relative = 0;
+  GeoPoint place;
+
+  bool is_too_much() const { return !(relative <= most_distortion); }
+  std::string text() const {
+    std::ostringstream text;
+    if (std::isfinite(relative)) text << "makes lengths wrong by " << std::setprecision(2) << 100 * relative << " %"; else text << "does not reach";
+    return text.str();
   }
+};
+
+/// Where they are wrong the most.
+struct AreaDistortion {
+  Distortion middle;
+  Distortion at_edges;     ///< in the middle of one: each is touched by data
+  Distortion at_corners;   ///< where none need to lie
+  const Distortion& at_data() const { return middle.is_too_much() || middle.relative >= at_edges.relative ? middle : at_edges; }
+};
+
+AreaDistortion distortion_over(const Crs& crs, const LonLatArea& area) {
+  std::vector<GeoPoint> places{area.middle()};
+  std::ranges::copy(area.edge_middles(), std::back_inserter(places));
+  std::ranges::copy(area.corners(), std::back_inserter(places));
+  const std::vector<double> distortions = crs.length_distortions(places);
+  const auto worst = [&](std::size_t first, std::size_t count) {
+    const auto at = std::ranges::max_element(std::span(distortions).subspan(first, count)) - std::span(distortions).begin();
+    return Distortion{distortions[static_cast<std::size_t>(at)], places[static_cast<std::size_t>(at)]};
+  };
+  return {worst(0, 1), worst(1, 4), worst(5, 4)};
+}
+
+/// Of the inputs' area and that of --bbox, which may take a corner of them, the one that fits the CRS better.
+LonLatArea best_area(const Crs& crs, const PriorOptions& options, const LonLatArea& area) {
+  if (options.bbox.empty()) return area;
+  const std::vector<double>& b = options.bbox;
+  const std::optional<LonLatArea> box = lon_lat_area({b[0], b[1], b[2], b[3]}, horizontal_option_crs("--bbox-crs", options.bbox_crs));
+  if (!box) return area;
+  const auto misfit = [&](const LonLatArea& a) { return std::pair(distortion_over(crs, a).at_data().is_too_much(), degrees_outside(crs, a.middle())); };
+  return misfit(*box) < misfit(area) ? *box : area;
+}
+
+std::string described(const Crs& crs, const PriorOptions& options) {
+  return (options.crs.empty() ? "" : "--crs ") + crs.name() + " (" + crs.horizontal().human_name() + ")";
+}
+
+/// Where a metre of the grid is no metre any more, spacing and sigmas would be wrong.
+void check_lengths(const Crs& crs, const PriorOptions& options, const LonLatArea& area, const Events& events) {
+  constexpr const char* for_the_whole = "; --bbox keeps a part of the data, --crs names a CRS made for all of their area";
+  const AreaDistortion over = distortion_over(crs, area);
+  if (const Distortion& worst = over.at_data(); worst.is_too_much())
+    throw CrsError(described(crs, options) + " " + worst.text() + " where the data lie (" + text_of(worst.place) + ")" +
+                   (over.middle.is_too_much() ? fitting_zone(crs, worst.place) : for_the_whole));
+  if (over.at_corners.is_too_much())
+    events.warn(described(crs, options) + " " + over.at_corners.text() + " at a corner of the data's extent (" + text_of(over.at_corners.place) + ")" + for_the_whole);
+}
+
+/// A CRS that is asked for where it does not belong is a slip: mostly the wrong zone. Neighbouring zones are in use side by side, so that is said and done as asked.
+void check_use(const Crs& asked, const PriorOptions& options, const GeoPoint& place, const Events& events) {
   if (degrees_outside(asked, place) <= border_deg) return;
-  const std::optional<LonLatArea> area = asked.area_of_use();
-  events.warn(name + " is meant for longitudes " + degrees_text(area->west_deg, area->east_deg) + " and latitudes " + degrees_text(area->south_deg, area->north_deg) +
-              ", the data lie at " + where.str() + fitting_zone(asked, place));
+  const std::optional<LonLatArea> use = asked.area_of_use();
+  events.warn(described(asked, options) + " is meant for longitudes " + degrees_text(use->west_deg, use->east_deg) + " and latitudes " + degrees_text(use->south_deg, use->north_deg) +
+              ", the data lie at " + text_of(place) + fitting_zone(asked, place));
 }
 
 /// For heights that are undeclared.
@@ -162,10 +205,15 @@ InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>
   return {crs->with_vertical(assumed), assumed.name(), file};
 }
 
-Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const std::optional<GeoPoint>& middle, const Events& events) {
+Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const std::optional<LonLatArea>& area, const Events& events) {
+  const std::optional<GeoPoint> middle = area ? std::optional(area->middle()) : std::nullopt;
   const Crs asked = options.crs.empty() ? default_horizontal(inputs, middle.value_or(GeoPoint{})) : option_crs("--crs", options.crs);
   check_projected_in_metres(asked, middle);
-  if (!options.crs.empty() && middle) check_fits(asked, best_place(asked, options, *middle), events);
+  if (area) {
+    const LonLatArea best = best_area(asked, options, *area);
+    check_lengths(asked, options, best, events);
+    if (!options.crs.empty()) check_use(asked, options, best.middle(), events);
+  }
   if (asked.has_vertical()) {
     for (const InputCrs& input : inputs)
       if (!input.crs.has_vertical()) throw CrsError(input.file + ": heights are undeclared, but the prior is asked for in " + asked.name() + remedy_for(input, asked));

@@ -81,28 +81,22 @@ std::vector<RasterInput> read_inputs(const std::vector<fs::path>& files, const P
   return inputs;
 }
 
-/// The middle of all rasters in degrees, or of --bbox where they reach over more than one UTM zone.
-GeoPoint middle_of(const std::vector<RasterInput>& inputs, const PriorOptions& options) {
+/// Of all rasters, or of --bbox where they reach over more than one UTM zone.
+LonLatArea area_of(const std::vector<RasterInput>& inputs, const PriorOptions& options) {
   constexpr double zone_width_deg = 6;
-  const Crs lon_lat = Crs::parse("EPSG:4326");
-  Bounds2 all{180, 90, -180, -90};
-  for (const RasterInput& input : inputs) {
-    const auto image = image_bounds(input.facts.bounds, Transformer(input.crs.crs.horizontal(), lon_lat));
-    const Bounds2 bounds = image ? image->outer : Bounds2{-180, -90, 180, 90};
-    all = {std::min(all.min_x, bounds.min_x), std::min(all.min_y, bounds.min_y), std::max(all.max_x, bounds.max_x), std::max(all.max_y, bounds.max_y)};
-  }
-  if (all.max_x - all.min_x > zone_width_deg && !options.bbox.empty()) {
-    const Transformer to_lon_lat(horizontal_option_crs("--bbox-crs", options.bbox_crs), lon_lat);
-    const Eigen::Vector3d p = to_lon_lat.forward({0.5 * (options.bbox[0] + options.bbox[2]), 0.5 * (options.bbox[1] + options.bbox[3]), 0});
-    return {p.y(), p.x(), 0};
-  }
-  return {0.5 * (all.min_y + all.max_y), 0.5 * (all.min_x + all.max_x), 0};
+  static constexpr LonLatArea whole_earth{-180, -90, 180, 90};
+  const auto area_of_one = [](const RasterInput& input) { return lon_lat_area(input.facts.bounds, input.crs.crs).value_or(whole_earth); };
+  LonLatArea all = area_of_one(inputs.front());
+  for (const RasterInput& input : inputs) all = united(all, area_of_one(input));
+  if (all.width_deg() <= zone_width_deg || options.bbox.empty()) return all;
+  const std::vector<double>& b = options.bbox;
+  return lon_lat_area({b[0], b[1], b[2], b[3]}, horizontal_option_crs("--bbox-crs", options.bbox_crs)).value_or(all);
 }
 
 Crs prior_crs(const std::vector<RasterInput>& inputs, const PriorOptions& options, const Events& events) {
   std::vector<InputCrs> crs;
   for (const RasterInput& input : inputs) crs.push_back(input.crs);
-  return resolve_prior_crs(options, crs, middle_of(inputs, options), events);
+  return resolve_prior_crs(options, crs, area_of(inputs, options), events);
 }
 
 void warn_of_inaccuracy(const RasterInput& input, const CoordinateOperation& operation, const Events& events) {

@@ -9,6 +9,8 @@
 namespace priormap {
 namespace {
 
+LonLatArea area_at(const GeoPoint& place) { return {place.lon_deg, place.lat_deg, place.lon_deg, place.lat_deg}; }
+
 const GeoPoint munich{48.1, 11.5, 0};
 
 struct Resolved {
@@ -17,7 +19,7 @@ struct Resolved {
   std::string error;
 };
 
-Resolved resolve(const PriorOptions& options, const std::vector<std::string>& declared, const GeoPoint& middle = munich) {
+Resolved resolve_in(const LonLatArea& area, const PriorOptions& options, const std::vector<std::string>& declared) {
   Resolved resolved;
   Events events;
   events.warning = [&](const std::string& message) { resolved.warnings.push_back(message); };
@@ -25,12 +27,14 @@ Resolved resolve(const PriorOptions& options, const std::vector<std::string>& de
     std::vector<InputCrs> inputs;
     for (const std::string& text : declared)
       inputs.push_back(resolve_input_crs(options, text.empty() ? std::nullopt : std::optional(Crs::parse(text)), "input.tif", events));
-    resolved.crs = resolve_prior_crs(options, inputs, middle, events);
+    resolved.crs = resolve_prior_crs(options, inputs, area, events);
   } catch (const Error& error) {
     resolved.error = error.what();
   }
   return resolved;
 }
+
+Resolved resolve(const PriorOptions& options, const std::vector<std::string>& declared, const GeoPoint& place = munich) { return resolve_in(area_at(place), options, declared); }
 
 PriorOptions with(const std::function<void(PriorOptions&)>& set) {
   PriorOptions options;
@@ -70,10 +74,10 @@ TEST(PriorCrs, an_option_that_brings_heights_is_advised_before_an_assumption) {
   Events events;
   std::string warning;
   events.warning = [&](const std::string& text) { warning = text; };
-  resolve_prior_crs({}, {outlines}, GeoPoint{48, 11, 0}, events);
+  resolve_prior_crs({}, {outlines}, LonLatArea{11, 48, 11, 48}, events);
   EXPECT_NE(warning.find("give --terrain with declared heights, or --assume-vertical V"), std::string::npos) << warning;
   try {
-    resolve_prior_crs(with([](auto& o) { o.crs = "EPSG:25832+7837"; }), {outlines}, GeoPoint{48, 11, 0}, {});
+    resolve_prior_crs(with([](auto& o) { o.crs = "EPSG:25832+7837"; }), {outlines}, LonLatArea{11, 48, 11, 48}, {});
     FAIL();
   } catch (const CrsError& error) {
     EXPECT_NE(std::string(error.what()).find("; give --terrain with declared heights, or say --assume-vertical EPSG:7837 if they are in it"), std::string::npos) << error.what();
@@ -123,6 +127,30 @@ TEST(PriorCrs, a_zone_beside_the_data_is_warned_of_and_a_far_one_refused) {
   EXPECT_NE(resolve(asked("EPSG:32632+5773"), {"EPSG:4326+5773"}, {49.0, 28, 0}).error.find("makes lengths wrong by 2.3 %"), std::string::npos);
   EXPECT_NE(resolve(asked("EPSG:32632+5773"), {"EPSG:4326+5773"}, {40.8, -73.9, 0}).error.find("EPSG:32618 fits there"), std::string::npos);
   EXPECT_NE(resolve(asked("EPSG:3857"), {"EPSG:4326"}).error.find("EPSG:3857"), std::string::npos) << "Web Mercator has no metres";
+}
+
+TEST(PriorCrs, lengths_are_looked_at_where_the_data_reach_not_in_their_middle_alone) {
+  const LonLatArea europe{-10, 36, 40, 60}, norway{4.5, 57.9, 31.1, 71.2};
+  const Resolved by_default = resolve_in(europe, {}, {"EPSG:4326"});
+  for (const char* part : {"EPSG:32633 (WGS 84 / UTM zone 33N) makes lengths wrong by 4.2 %", "longitude 40.000, latitude 48.000", "--bbox keeps a part of the data"})
+    EXPECT_NE(by_default.error.find(part), std::string::npos) << by_default.error;
+  EXPECT_NE(resolve_in(europe, with([](auto& o) { o.crs = "EPSG:32633"; }), {"EPSG:4326"}).error.find("--crs EPSG:32633"), std::string::npos);
+  EXPECT_EQ(resolve_in(europe, with([](auto& o) { o.crs = "EPSG:32633"; o.bbox = {14, 48, 16, 50}; }), {"EPSG:4326"}).error, "") << "the box keeps what fits";
+  const Resolved at_corner = resolve_in(norway, with([](auto& o) { o.crs = "EPSG:25833+5773"; }), {"EPSG:4258+5773"});
+  EXPECT_EQ(at_corner.error, "") << "no data lie at that corner";
+  ASSERT_EQ(at_corner.warnings.size(), 1u);
+  EXPECT_NE(at_corner.warnings[0].find("makes lengths wrong by 1.1 % at a corner of the data's extent (longitude 31.100, latitude 57.900)"), std::string::npos) << at_corner.warnings[0];
+}
+
+TEST(PriorCrs, the_zone_of_data_across_the_antimeridian) {
+  EXPECT_EQ(resolve_in({179.5, -18, -179.8, -17}, {}, {"EPSG:4326"}).crs->name(), "EPSG:32760");
+  EXPECT_EQ(resolve_in({179.8, -18, -179.5, -17}, {}, {"EPSG:4326"}).crs->name(), "EPSG:32701");
+}
+
+TEST(PriorCrs, undeclared_heights_of_data_in_feet_are_taken_as_metres_and_that_is_said) {
+  const auto warning = [](const std::string& crs) { return resolve(with([](auto& o) { o.crs = "EPSG:32618"; }), {crs}, GeoPoint{40.8, -73.9, 0}).warnings.at(0); };
+  EXPECT_NE(warning("EPSG:2263").find("taken as metres though x and y are not"), std::string::npos);
+  EXPECT_EQ(warning("EPSG:32618").find("taken as metres"), std::string::npos);
 }
 
 TEST(PriorCrs, a_box_beside_the_data_or_no_data_at_all_is_not_the_crs_s_fault) {

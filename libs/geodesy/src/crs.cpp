@@ -205,6 +205,23 @@ double prime_meridian_deg(const ProjContext& context, const PJ* projected) {
   return proj_todeg(longitude * unit_rad);
 }
 
+/// Largest relative error of short lengths. @param radii  of the ellipsoid, along the meridian and across it, in the unit of the grid
+double distortion_at(PJ* from_degrees, const GeoPoint& place, const Eigen::Vector2d& radii) {
+  const auto image = [&](double north_deg, double east_deg) {
+    const PJ_COORD p = proj_trans(from_degrees, PJ_FWD, proj_coord(place.lon_deg + east_deg, place.lat_deg + north_deg, 0, 0));
+    return Eigen::Vector2d(p.xy.x, p.xy.y);
+  };
+  constexpr double step_deg = 1e-4;
+  Eigen::Matrix2d grid_from_ground;
+  grid_from_ground.col(0) = (image(0, step_deg) - image(0, -step_deg)) / (radii.y() * std::cos(proj_torad(place.lat_deg)));
+  grid_from_ground.col(1) = (image(step_deg, 0) - image(-step_deg, 0)) / radii.x();
+  grid_from_ground /= 2 * proj_torad(step_deg);
+  constexpr double out_of_reach = 10;   // where images jump
+  if (!(grid_from_ground.norm() < out_of_reach)) return std::numeric_limits<double>::infinity();
+  const Eigen::Vector2d scales = grid_from_ground.jacobiSvd().singularValues();   // the axes of Tissot's indicatrix
+  return std::max(std::abs(scales[0] - 1), std::abs(scales[1] - 1));
+}
+
 [[noreturn]] void fail_unreadable(const std::string& text, const ProjContext& context) {
   const std::string cause = context.last_message();
   throw CrsError("'" + shortened(text) + "' is no coordinate reference system that PROJ knows" + (cause.empty() ? "" : " (" + cause + ")"));
@@ -312,27 +329,21 @@ std::optional<LonLatArea> Crs::area_of_use() const {
   return area.west_deg == unknown ? std::nullopt : std::optional(area);
 }
 
-double Crs::length_distortion(const GeoPoint& place) const {
+double Crs::length_distortion(const GeoPoint& place) const { return length_distortions(std::span(&place, 1)).front(); }
+
+std::vector<double> Crs::length_distortions(std::span<const GeoPoint> places) const {
   const Crs flat = horizontal();
   const ProjContext context;
   const ProjObject stated = create_crs(context, flat.name());
   const ProjObject from_degrees = from_degrees_of_its_datum(context, stated.get());
-  if (!from_degrees) return std::numeric_limits<double>::infinity();
-  const double lon_deg = place.lon_deg - prime_meridian_deg(context, stated.get());
-  const auto image = [&](double north_deg, double east_deg) {
-    const PJ_COORD p = proj_trans(from_degrees.get(), PJ_FWD, proj_coord(lon_deg + east_deg, place.lat_deg + north_deg, 0, 0));
-    return Eigen::Vector2d(p.xy.x, p.xy.y);
-  };
-  constexpr double step_deg = 1e-4;
-  const Eigen::Vector2d radii_m = curvature_radii_m(flat, place.lat_deg);
-  Eigen::Matrix2d grid_from_ground;
-  grid_from_ground.col(0) = (image(0, step_deg) - image(0, -step_deg)) / (radii_m.y() * std::cos(proj_torad(place.lat_deg)));
-  grid_from_ground.col(1) = (image(step_deg, 0) - image(-step_deg, 0)) / radii_m.x();
-  grid_from_ground *= horizontal_unit_m() / (2 * proj_torad(step_deg));
-  constexpr double out_of_reach = 10;   // where images jump
-  if (!(grid_from_ground.norm() < out_of_reach)) return std::numeric_limits<double>::infinity();
-  const Eigen::Vector2d scales = grid_from_ground.jacobiSvd().singularValues();   // the axes of Tissot's indicatrix
-  return std::max(std::abs(scales[0] - 1), std::abs(scales[1] - 1));
+  if (!from_degrees) return std::vector<double>(places.size(), std::numeric_limits<double>::infinity());
+  const double meridian_deg = prime_meridian_deg(context, stated.get());
+  std::vector<double> distortions;
+  for (const GeoPoint& place : places) {
+    const Eigen::Vector2d radii_m = curvature_radii_m(flat, place.lat_deg);
+    distortions.push_back(distortion_at(from_degrees.get(), {place.lat_deg, place.lon_deg - meridian_deg, 0}, radii_m / horizontal_unit_m()));
+  }
+  return distortions;
 }
 
 bool Crs::equivalent_to(const Crs& other) const {

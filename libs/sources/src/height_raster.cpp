@@ -90,11 +90,11 @@ struct HeightRaster::Impl {
       : raster(file, override_crs),
         source(source_crs(raster, override_crs)),
         target(target_crs),
-        horizontal(naming_file(file, [&] { return Transformer(source.horizontal(), target.horizontal(), area_of(raster.facts(), source)); })),
+        horizontal(naming_file(file, [&] { return target_from_raster(raster.facts(), source.horizontal(), target.horizontal()); })),
         back(horizontal, InterpolatedTransformer::Direction::inverse),
         cell_from_world(raster.world_from_cell().inverse()),
         cells(raster) {
-    if (target.has_vertical()) spatial.emplace(naming_file(file, [&] { return Transformer(source, target, area_of(raster.facts(), source)); }));
+    if (target.has_vertical()) spatial.emplace(naming_file(file, [&] { return target_from_raster(raster.facts(), source, target); }));
     if (spatial && spatial->is_identity()) spatial.reset();
   }
   Impl(const Impl& other)

@@ -2,14 +2,14 @@
 
 #include <cmath>
 
-#include <priormap/geodesy/image_bounds.hpp>
+#include <priormap/geodesy/lon_lat_area.hpp>
 
 namespace priormap {
 
-std::optional<LonLatArea> area_of(const RasterFacts& facts, const Crs& source) {
-  const auto image = image_bounds(facts.bounds, Transformer(source.horizontal(), Crs::parse("EPSG:4326")));
-  if (!image) return std::nullopt;
-  return LonLatArea{image->outer.min_x, image->outer.min_y, image->outer.max_x, image->outer.max_y};
+Transformer target_from_raster(const RasterFacts& facts, const Crs& source, const Crs& target) {
+  Transformer transformer(source, target, lon_lat_area(facts.bounds, source));
+  transformer.keep_source_longitudes_around(0.5 * (facts.bounds.min_x + facts.bounds.max_x));
+  return transformer;
 }
 
 double target_cell_size(const RasterFile& raster, const Transformer& target_from_source) {

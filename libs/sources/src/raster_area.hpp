@@ -1,6 +1,4 @@
 #pragma once
-#include <optional>
-
 #include <priormap/geodesy/transformer.hpp>
 #include <priormap/sources/height_raster.hpp>
 
@@ -8,8 +6,8 @@
 
 namespace priormap {
 
-/// Where a raster lies, for the choice of a coordinate operation; nothing where its bounds have no image in degrees.
-std::optional<LonLatArea> area_of(const RasterFacts& facts, const Crs& source);
+/// By the operation for where the raster lies; longitudes of the raster are counted as it counts them: across the antimeridian, or from 0 to 360.
+Transformer target_from_raster(const RasterFacts& facts, const Crs& source, const Crs& target);
 
 /// Edge of a cell (geometric mean) in the unit of the target CRS, at the raster's centre.
 double target_cell_size(const RasterFile& raster, const Transformer& target_from_source);

@@ -98,7 +98,7 @@ class CellSampling {
  private:
   CellSampling(RasterFile raster, const Crs& source, const Crs& target, const std::optional<double>& least_wall_m)
       : raster_(std::move(raster)),
-        transformer_(Transformer(source, target, area_of(raster_.facts(), source))),
+        transformer_(target_from_raster(raster_.facts(), source, target)),
         back_(transformer_.exact(), InterpolatedTransformer::Direction::inverse) {
     const RasterFacts& facts = raster_.facts();
     cell_size_ = target_cell_size(raster_, transformer_.exact());
@@ -226,8 +226,9 @@ class LatticeSampling {
  public:
   LatticeSampling(const std::filesystem::path& file, const Crs& source, const Crs& target, double spacing, const std::optional<double>& least_wall_m)
       : raster_(HeightRaster::open(file, source, target)), cells_(file, source, target, least_wall_m), spacing_(spacing) {
-    InterpolatedTransformer horizontal(Transformer(source.horizontal(), target.horizontal()));
-    bounds_ = target_bounds(read_raster_facts(file), raster_.cell_size(), horizontal);
+    const RasterFacts facts = read_raster_facts(file);
+    InterpolatedTransformer horizontal(target_from_raster(facts, source.horizontal(), target.horizontal()));
+    bounds_ = target_bounds(facts, raster_.cell_size(), horizontal);
   }
 
   const std::optional<Bounds2>& bounds() const { return bounds_; }

@@ -45,12 +45,15 @@ cmp east.xyz north.xyz || die "the axis order of CityJSON is mixed up"
 box urn:ogc:def:crs:EPSG::4326 "48.1400 11.5700" "48.1400 11.5703" "48.1401 11.5703" >latitude.gml
 box EPSG:4326 "11.5700 48.1400" "11.5703 48.1400" "11.5703 48.1401" >longitude.gml
 sed "s/<Envelope srsName='[^']*'/<Envelope/; s/<Polygon>/<Polygon srsName='urn:ogc:def:crs:EPSG::4326'>/" latitude.gml >inside.gml
-for name in latitude longitude inside; do
+for older in urn:x-ogc:def:crs:EPSG:4326 urn:EPSG:geographicCRS:4326; do sed "s/srsName='[^']*'/srsName='$older'/" latitude.gml >${older//:/_}.gml; done
+sed "s/srsName='[^']*'/srsName='CRS:84'/" longitude.gml >crs84.gml
+for name in latitude longitude inside urn_x-ogc_def_crs_EPSG_4326 urn_EPSG_geographicCRS_4326 crs84; do
   succeeds citygml2prior $name.gml --quiet --crs EPSG:25832 -o $name
   succeeds priorexport $name --sort -o $name.xyz
 done
 cmp latitude.xyz longitude.xyz || die "latitude and longitude are mixed up"
 cmp latitude.xyz inside.xyz || die "srsName of the polygons is not read"
+for name in urn_x-ogc_def_crs_EPSG_4326 urn_EPSG_geographicCRS_4326 crs84; do cmp latitude.xyz $name.xyz || die "$name gives other points"; done
 
 # A URN, and still the longitude first: in Bangkok no other order is possible.
 box urn:ogc:def:crs:EPSG::4326 "13.7500 100.5000" "13.7500 100.5003" "13.7501 100.5003" >bangkok.gml

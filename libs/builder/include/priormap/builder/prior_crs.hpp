@@ -6,7 +6,7 @@
 #include <priormap/builder/prior_options.hpp>
 #include <priormap/core/events.hpp>
 #include <priormap/geodesy/crs.hpp>
-#include <priormap/geodesy/geo_point.hpp>
+#include <priormap/geodesy/lon_lat_area.hpp>
 
 namespace priormap {
 
@@ -22,12 +22,12 @@ struct InputCrs {
 /// @throws CrsError when neither file nor options name a CRS.
 InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>& declared, const std::string& file, const Events& events);
 
-/// The CRS of a prior made from `inputs` with its middle at `middle` (none: they hold nothing): --crs, or the UTM zone (the inputs' own zone where all have the same
-/// one). Without a vertical part named, the inputs' common one is taken; heights that nobody declares stay undeclared, with one warning.
-/// A --crs that is not meant for the middle's place is warned of.
-/// @throws CrsError when the CRS asked for is not projected in metres, or makes lengths there wrong by more than 1 %, or a named vertical CRS is asked from undeclared heights,
-/// or inputs disagree on their heights and none is asked for.
-Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const std::optional<GeoPoint>& middle, const Events& events);
+/// The CRS of a prior made from `inputs` that lie in `area` (none: they hold nothing): --crs, or the UTM zone of its middle (the inputs' own zone where all have the
+/// same one). Without a vertical part named, the inputs' common one is taken; heights that nobody declares stay undeclared, with one warning.
+/// A --crs that is not meant for the middle's place is warned of, and lengths wrong by more than 1 % at a corner of the area. Where --bbox fits better, it counts.
+/// @throws CrsError when the CRS is not projected in metres, or makes lengths wrong by more than 1 % in the middle of the area or of one of its edges, which the data
+/// touch, or a named vertical CRS is asked from undeclared heights, or inputs disagree on their heights and none is asked for.
+Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const std::optional<LonLatArea>& area, const Events& events);
 
 /// The vertical part of a prior's CRS as the manifest names it; nothing where heights are undeclared.
 std::optional<std::string> vertical_name(const Crs& prior);

@@ -1,7 +1,9 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <priormap/geodesy/geo_point.hpp>
 #include <priormap/geodesy/lon_lat_area.hpp>
@@ -54,6 +56,7 @@ class Crs {
   /// Largest relative error of a short length on the grid of a projected CRS against the ellipsoid: 0.0004 in the middle of a UTM zone;
   /// infinity where the projection does not reach.
   double length_distortion(const GeoPoint& place) const;
+  std::vector<double> length_distortions(std::span<const GeoPoint> places) const;   ///< the same of many places, hardly dearer than of one
 
   bool equivalent_to(const Crs& other) const;
   /// Heights of both count from the same surface; units and direction may differ. False where one declares no vertical CRS.
