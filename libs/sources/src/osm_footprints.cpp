@@ -10,11 +10,14 @@
 #include <span>
 #include <system_error>
 #include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 #include <priormap/core/error.hpp>
 #include <priormap/sources/osm_tags.hpp>
 
 #include "osm_rings.hpp"
+#include "osm_xml_notes.hpp"
 
 namespace priormap {
 namespace {
@@ -43,6 +46,7 @@ void unpack(ByteReader& in, WayContent& content) {
 
 struct Way {
   WayId id;
+  std::uint32_t version;
   std::uint32_t content;   ///< in OsmObjects::way_contents
   std::uint16_t file;
   bool is_building, is_part;
@@ -59,6 +63,7 @@ struct Relation {
   BuildingAttributes attributes;
   bool is_building = false, is_part = false, is_multipolygon = false, is_building_relation = false, says_nothing = false;
   std::uint16_t file = 0;
+  std::uint32_t version = 0;
 };
 
 /// What buildings need of the files, and no more.
@@ -68,8 +73,11 @@ struct OsmObjects {
   PackedList<WayContent> way_contents;
   std::vector<OsmNodeId> nodes;                ///< of all ways: first one after the other, then by id
   std::vector<osmium::Location> locations;     ///< of `nodes` by id; invalid where no file holds the node
+  std::vector<std::uint32_t> node_versions;    ///< likewise
+  std::vector<std::pair<OsmNodeId, osmium::Location>> locations_on_ways;   ///< of files whose ways carry them
 
-  Way* find_way(WayId id) {
+  Way* find_way(WayId id) { return find_way(ways, id); }
+  static Way* find_way(std::span<Way> ways, WayId id) {
     const auto at = std::ranges::lower_bound(ways, id, {}, &Way::id);
     return at != ways.end() && at->id == id ? &*at : nullptr;
   }
@@ -102,22 +110,42 @@ OsmBuildingTags building_tags(const osmium::OSMObject& object) {
 
 std::string feature_id(const char* kind, std::int64_t id) { return std::string(kind) + "/" + std::to_string(id); }
 
-/// Calls `visit(object)` for each visible object of one type in a file.
+/// One of the files, and what is known of it.
+struct OsmFile {
+  fs::path path;
+  std::uint16_t index;
+  OsmXmlNotes notes;
+  bool is_in_order = true;    ///< by id, each once
+  bool holds_history = false; ///< several versions of an object, one after the other
+
+  bool is_deleted(const osmium::OSMObject& object) const {
+    return !object.visible() || (!notes.deleted.empty() && notes.deleted.contains({osmium::item_type_to_name(object.type()), object.id()}));
+  }
+  /// What is deleted and not yet uploaded still has the version of what it was.
+  std::uint32_t version(const osmium::OSMObject& object) const { return object.version() + (object.visible() && is_deleted(object) ? 1 : 0); }
+};
+
+/// Calls `visit(object)` for each object of one type in a file, deleted ones too.
 template <class Object, class Visitor>
-void for_each_object(const fs::path& file, osmium::osm_entity_bits::type entities, int threads, const Visitor& visit) {
+void for_each_object(OsmFile& file, osmium::osm_entity_bits::type entities, int threads, const Visitor& visit) {
+  std::int64_t last = std::numeric_limits<std::int64_t>::min();
   try {
     osmium::thread::Pool pool(threads, 4 * static_cast<std::size_t>(threads));
-    osmium::io::Reader reader(osmium::io::File(file.string()), entities, pool);
+    osmium::io::Reader reader(osmium::io::File(file.path.string()), entities, pool);
     while (const osmium::memory::Buffer buffer = reader.read())
-      for (const Object& object : buffer.select<Object>())
-        if (object.visible()) visit(object);
+      for (const Object& object : buffer.select<Object>()) {
+        file.holds_history |= object.id() == last;
+        file.is_in_order &= object.id() > last;
+        last = object.id();
+        visit(object);
+      }
     reader.close();
   } catch (const std::system_error& error) {
-    throw IoError(file, error.code().message());
+    throw IoError(file.path, error.code().message());
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {  // osmium's io_error and what its format readers throw
-    throw FormatError(file, std::string("cannot be read as OSM data, perhaps it is cut short (") + error.what() + ")");
+    throw FormatError(file.path, std::string("cannot be read as OSM data, perhaps it is cut short (") + error.what() + ")");
   }
 }
 
@@ -125,8 +153,10 @@ bool is_wanted(const Relation& relation) {
   return relation.is_building_relation || (relation.is_multipolygon && (relation.is_building || relation.is_part || relation.says_nothing));
 }
 
-void read_relations(const fs::path& file, std::uint16_t file_index, int threads, OsmObjects& objects, Diagnostics& diagnostics) {
+void read_relations(OsmFile& file, int threads, OsmObjects& objects, Diagnostics& diagnostics) {
   for_each_object<osmium::Relation>(file, osmium::osm_entity_bits::relation, threads, [&](const osmium::Relation& object) {
+    const auto known = objects.relations.find(object.id());
+    if (file.is_deleted(object) || (known != objects.relations.end() && known->second.version >= file.version(object))) return;
     const OsmBuildingTags tags = building_tags(object);
     Relation relation;
     relation.is_building = tags.is_building();
@@ -134,49 +164,69 @@ void read_relations(const fs::path& file, std::uint16_t file_index, int threads,
     relation.is_multipolygon = tags.is_multipolygon();
     relation.is_building_relation = tags.is_building_relation();
     relation.says_nothing = tags.says_nothing();
-    relation.file = file_index;
-    if (!is_wanted(relation) || objects.relations.contains(object.id())) return;
+    relation.file = file.index;
+    relation.version = file.version(object);
+    if (!is_wanted(relation)) return;
     relation.attributes = tags.attributes(feature_id("relation", object.id()), diagnostics);
     for (const osmium::RelationMember& member : object.members()) relation.members.push_back({member.type(), member.ref(), member.role()});
-    objects.relations.emplace(object.id(), std::move(relation));
+    objects.relations.insert_or_assign(object.id(), std::move(relation));
   });
 }
 
-/// Puts the ways of one more file, from `first` on, among the others. Of a way given twice the first remains.
+/// Later versions may be no building any more, or deleted: only objects that are known are compared with them.
+void leave_out_superseded_relations(OsmFile& file, int threads, OsmObjects& objects) {
+  for_each_object<osmium::Relation>(file, osmium::osm_entity_bits::relation, threads, [&](const osmium::Relation& object) {
+    const auto known = objects.relations.find(object.id());
+    if (known != objects.relations.end() && known->second.version < file.version(object)) objects.relations.erase(known);
+  });
+}
+
+/// Puts the ways of one more file, from `first` on, among the others. Of a way given several times the highest version remains, of equal ones the first.
 void put_in_order(std::vector<Way>& ways, std::size_t first) {
+  const auto order = [](const Way& a, const Way& b) { return a.id != b.id ? a.id < b.id : a.version > b.version; };
   const auto begin_of_new = ways.begin() + static_cast<std::ptrdiff_t>(first);
-  std::ranges::stable_sort(begin_of_new, ways.end(), {}, &Way::id);
-  std::ranges::inplace_merge(ways.begin(), begin_of_new, ways.end(), {}, &Way::id);
+  std::stable_sort(begin_of_new, ways.end(), order);
+  std::inplace_merge(ways.begin(), begin_of_new, ways.end(), order);
   const auto repeated = std::ranges::unique(ways, {}, &Way::id);
   ways.erase(repeated.begin(), repeated.end());
 }
 
-void read_ways(const fs::path& file, std::uint16_t file_index, int threads, OsmObjects& objects, Diagnostics& diagnostics) {
+void read_ways(OsmFile& file, int threads, OsmObjects& objects, Diagnostics& diagnostics) {
   std::vector<WayId> wanted;
   for (const auto& [id, relation] : objects.relations)
     for (const Member& member : relation.members)
       if (member.type == osmium::item_type::way) wanted.push_back(member.ref);
   std::ranges::sort(wanted);
 
-  const std::vector<WayId> known = [&] {
-    std::vector<WayId> ids;
-    std::ranges::transform(objects.ways, std::back_inserter(ids), &Way::id);
-    return ids;
-  }();
   const std::size_t first = objects.ways.size();
   WayContent content;
   for_each_object<osmium::Way>(file, osmium::osm_entity_bits::way, threads, [&](const osmium::Way& object) {
+    if (file.is_deleted(object)) return;
     const OsmBuildingTags tags = building_tags(object);
     const bool building = tags.is_building() || tags.is_part();
-    if (!(building || std::ranges::binary_search(wanted, object.id())) || std::ranges::binary_search(known, object.id())) return;
+    if (!building && !std::ranges::binary_search(wanted, object.id())) return;
+    const Way* known = OsmObjects::find_way(std::span(objects.ways).first(first), object.id());
+    if (known && known->version >= file.version(object)) return;
     content.attributes = building ? tags.attributes(feature_id("way", object.id()), diagnostics) : BuildingAttributes();
     content.nodes.clear();
-    for (const osmium::NodeRef& node : object.nodes()) content.nodes.push_back(node.ref());
+    for (const osmium::NodeRef& node : object.nodes()) {
+      content.nodes.push_back(node.ref());
+      if (node.location().valid()) objects.locations_on_ways.emplace_back(node.ref(), node.location());
+    }
     objects.nodes.insert(objects.nodes.end(), content.nodes.begin(), content.nodes.end());
-    objects.ways.push_back({object.id(), static_cast<std::uint32_t>(objects.way_contents.size()), file_index, tags.is_building(), tags.is_part()});
+    objects.ways.push_back({object.id(), file.version(object), static_cast<std::uint32_t>(objects.way_contents.size()), file.index, tags.is_building(), tags.is_part()});
     objects.way_contents.push_back(content);
   });
   put_in_order(objects.ways, first);
+}
+
+void leave_out_superseded_ways(OsmFile& file, int threads, OsmObjects& objects) {
+  std::unordered_set<WayId> superseded;
+  for_each_object<osmium::Way>(file, osmium::osm_entity_bits::way, threads, [&](const osmium::Way& object) {
+    const Way* known = objects.find_way(object.id());
+    if (known && known->version < file.version(object)) superseded.insert(object.id());
+  });
+  std::erase_if(objects.ways, [&](const Way& way) { return superseded.contains(way.id); });
 }
 
 void list_wanted_nodes(OsmObjects& objects) {
@@ -184,9 +234,10 @@ void list_wanted_nodes(OsmObjects& objects) {
   const auto repeated = std::ranges::unique(objects.nodes);
   objects.nodes.erase(repeated.begin(), repeated.end());
   objects.locations.resize(objects.nodes.size());
+  objects.node_versions.resize(objects.nodes.size());
 }
 
-void read_nodes(const fs::path& file, int threads, OsmObjects& objects) {
+void read_nodes(OsmFile& file, int threads, OsmObjects& objects) {
   const std::vector<OsmNodeId>& nodes = objects.nodes;
   auto cursor = nodes.begin();
   OsmNodeId last = std::numeric_limits<OsmNodeId>::min();
@@ -196,9 +247,21 @@ void read_nodes(const fs::path& file, int threads, OsmObjects& objects) {
     last = node.id();
     while (cursor != nodes.end() && *cursor < node.id()) ++cursor;
     if (cursor == nodes.end() || *cursor != node.id()) return;
-    osmium::Location& location = objects.locations[static_cast<std::size_t>(cursor - nodes.begin())];
-    if (!location.valid()) location = node.location();
+    const auto i = static_cast<std::size_t>(cursor - nodes.begin());
+    const std::uint32_t version = file.version(node);
+    if (version < objects.node_versions[i] || (version == objects.node_versions[i] && objects.locations[i].valid())) return;
+    objects.locations[i] = file.is_deleted(node) ? osmium::Location() : node.location();
+    objects.node_versions[i] = version;
   });
+}
+
+/// Where no file holds the nodes themselves.
+void take_locations_of_ways(OsmObjects& objects) {
+  for (const auto& [node, location] : objects.locations_on_ways) {
+    const auto i = static_cast<std::size_t>(std::ranges::lower_bound(objects.nodes, node) - objects.nodes.begin());
+    if (!objects.locations[i].valid()) objects.locations[i] = location;
+  }
+  objects.locations_on_ways = {};
 }
 
 /// Turns the objects into footprints, in order of kind and id.
@@ -370,22 +433,37 @@ class FootprintAssembly {
 
 }  // namespace
 
-FootprintList read_osm_footprints(const std::vector<fs::path>& files, int threads, Diagnostics& diagnostics, const Events& events) {
+FootprintList read_osm_footprints(const std::vector<fs::path>& paths, int threads, Diagnostics& diagnostics, const Events& events) {
   OsmObjects objects;
+  std::vector<OsmFile> files;
+  for (const fs::path& path : paths) {
+    if (!fs::exists(path)) throw IoError(path, "no such file");
+    files.push_back({path, static_cast<std::uint16_t>(files.size()), read_osm_xml_notes(path)});
+    if (const std::string& remark = files.back().notes.remark; !remark.empty())
+      events.warn(path.string() + ": Overpass broke off: \"" + remark + "\"; parts are missing, ask for it again with a longer [timeout:] or a smaller area");
+  }
   const double num_steps = 3.0 * static_cast<double>(files.size());
   double step = 0;
   const auto read_all = [&](const auto& read) {
-    for (std::size_t i = 0; i < files.size(); ++i) {
-      read(files[i], static_cast<std::uint16_t>(i));
+    for (OsmFile& file : files) {
+      read(file);
       events.advance("reading OSM", ++step / num_steps);
     }
   };
-  for (const fs::path& file : files)
-    if (!fs::exists(file)) throw IoError(file, "no such file");
-  read_all([&](const fs::path& file, std::uint16_t i) { read_relations(file, i, threads, objects, diagnostics); });
-  read_all([&](const fs::path& file, std::uint16_t i) { read_ways(file, i, threads, objects, diagnostics); });
+  const auto look_again = [&](const auto& leave_out_superseded) {
+    const bool may_repeat = files.size() > 1 || std::ranges::any_of(files, [](const OsmFile& file) { return !file.is_in_order; });
+    for (OsmFile& file : files)
+      if (may_repeat) leave_out_superseded(file, threads, objects);
+  };
+  read_all([&](OsmFile& file) { read_relations(file, threads, objects, diagnostics); });
+  look_again(leave_out_superseded_relations);
+  read_all([&](OsmFile& file) { read_ways(file, threads, objects, diagnostics); });
+  look_again(leave_out_superseded_ways);
   list_wanted_nodes(objects);
-  read_all([&](const fs::path& file, std::uint16_t) { read_nodes(file, threads, objects); });
+  read_all([&](OsmFile& file) { read_nodes(file, threads, objects); });
+  take_locations_of_ways(objects);
+  for (const OsmFile& file : files)
+    if (file.holds_history) events.warn(file.path.string() + ": holds several versions of objects, as history files do; the highest of each counts");
   return FootprintAssembly(objects, diagnostics).run();
 }
 

@@ -29,6 +29,26 @@ std::optional<double> usual_width_m(const char* highway) {
   return found == widths.end() ? std::nullopt : std::optional(found->second);
 }
 
+/// Where the nodes lie; where no node says it, what the way itself says remains.
+class LocationsOfWays : public osmium::handler::Handler {
+ public:
+  explicit LocationsOfWays(LocationsForWays& of_nodes) : of_nodes_(of_nodes) {}
+  void way(osmium::Way& way) {
+    own_.clear();
+    for (const osmium::NodeRef& node : way.nodes()) own_.push_back(node.location());
+    of_nodes_.way(way);
+    auto own = own_.begin();
+    for (osmium::NodeRef& node : way.nodes()) {
+      if (!node.location().valid()) node.set_location(*own);
+      ++own;
+    }
+  }
+
+ private:
+  LocationsForWays& of_nodes_;
+  std::vector<osmium::Location> own_;
+};
+
 class StreetCollector : public osmium::handler::Handler {
  public:
   void way(const osmium::Way& way) {
@@ -55,12 +75,13 @@ std::vector<OsmStreet> read_osm_streets(const std::filesystem::path& file) {
     Locations locations;
     LocationsForWays locations_for_ways(locations);
     locations_for_ways.ignore_errors();   // streets cut at the extract's edge are left out below
+    LocationsOfWays locations_of_ways(locations_for_ways);
     const osmium::io::File input(file.string());
     osmium::io::Reader nodes(input, osmium::osm_entity_bits::node);   // first, wherever the file has them
     osmium::apply(nodes, locations_for_ways);
     nodes.close();
     osmium::io::Reader ways(input, osmium::osm_entity_bits::way);
-    osmium::apply(ways, locations_for_ways, collector);
+    osmium::apply(ways, locations_of_ways, collector);
     ways.close();
   } catch (const std::exception& error) {
     throw FormatError(file, std::string("is not a readable OSM file: ") + error.what());

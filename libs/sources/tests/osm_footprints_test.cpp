@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <tuple>
 
 #include <priormap/core/error.hpp>
 #include <priormap/sources/osm_footprints.hpp>
@@ -239,6 +240,65 @@ TEST_F(OsmFootprints, SeveralFilesAreOneDataSetInAnyOrder) {
     EXPECT_EQ(ab[i].id, ba[i].id);
     EXPECT_EQ(ab[i].rings, ba[i].rings);
   }
+}
+
+/// A house of nodes 1 to 4, way 9, at a version of its own; `attributes` of the way's tag.
+std::string house(int version, const std::string& height, const std::string& attributes = "", const std::string& tag = building) {
+  return "<way id='9' version='" + std::to_string(version) + "' " + attributes + "><nd ref='1'/><nd ref='2'/><nd ref='3'/><nd ref='4'/><nd ref='1'/>" + tag + OsmText::tag("height", height) + "</way>\n";
+}
+std::string node(int id, int version, double lat, double lon, const std::string& attributes = "") {
+  return "<node id='" + std::to_string(id) + "' version='" + std::to_string(version) + "' lat='" + std::to_string(lat) + "' lon='" + std::to_string(lon) + "' " + attributes + "/>\n";
+}
+std::string osm(const std::string& objects) { return "<?xml version='1.0'?>\n<osm version='0.6'>\n" + objects + "</osm>\n"; }
+const std::string corners = node(1, 1, 0, 0) + node(2, 1, 0, 0.001) + node(3, 1, 0.001, 0.001) + node(4, 1, 0.001, 0);
+
+TEST_F(OsmFootprints, TheHighestVersionCountsWhateverTheOrderOfFilesAndObjects) {
+  const std::string gone = "visible='false'";
+  const auto height_of = [&](const std::vector<std::string>& texts) -> std::optional<double> {
+    std::vector<fs::path> files;
+    for (const std::string& text : texts) files.push_back(write(std::to_string(files.size()) + ".osm", osm(text)));
+    const auto footprints = read_osm_footprints(files, 2, diagnostics_);
+    return footprints.empty() ? std::nullopt : footprints[0].attributes.height_m;
+  };
+  EXPECT_EQ(height_of({corners + house(1, "5") + house(2, "10")}), 10);
+  EXPECT_EQ(height_of({corners + house(2, "10") + house(1, "5")}), 10);
+  EXPECT_EQ(height_of({corners + house(1, "5") + house(2, "10", gone)}), std::nullopt);
+  EXPECT_EQ(height_of({corners + house(1, "5") + house(2, "10", "", OsmText::tag("landuse", "grass"))}), std::nullopt) << "no building any more";
+  for (const auto& [first, second, height] : {std::tuple(house(1, "5"), house(2, "10"), std::optional(10.0)), {house(1, "5"), house(2, "10", gone), std::nullopt}}) {
+    EXPECT_EQ(height_of({corners + first, corners + second}), height);
+    EXPECT_EQ(height_of({corners + second, corners + first}), height);
+  }
+}
+
+TEST_F(OsmFootprints, ANodeThatMovedLiesWhereItsHighestVersionSays) {
+  const fs::path monday = write("monday.osm", osm(corners + house(1, "5"))), tuesday = write("tuesday.osm", osm(node(3, 2, 0.002, 0.002) + house(1, "5")));
+  for (const auto& files : {std::vector{monday, tuesday}, {tuesday, monday}})
+    EXPECT_NEAR(read_osm_footprints(files, 2, diagnostics_)[0].rings[0][2].x(), 0.002, 1e-9);
+}
+
+TEST_F(OsmFootprints, WhatIsDeletedInJosmIsNoBuilding) {
+  EXPECT_EQ(read_osm_footprints({write("a.osm", osm(corners + house(3, "5", "action='modify'")))}, 2, diagnostics_).size(), 1u);
+  EXPECT_TRUE(read_osm_footprints({write("b.osm", osm(corners + house(3, "5", "action='delete' visible='true'")))}, 2, diagnostics_).empty());
+}
+
+TEST_F(OsmFootprints, ARemarkOfOverpassAndHistoryAreWarnedOf) {
+  std::vector<std::string> warnings;
+  Events events;
+  events.warning = [&](const std::string& text) { warnings.push_back(text); };
+  read_osm_footprints({write("a.osm", osm(corners + house(1, "5")))}, 2, diagnostics_, events);
+  EXPECT_TRUE(warnings.empty());
+  read_osm_footprints({write("b.osm", osm(corners + house(1, "5") + house(2, "5") + "<remark>runtime error: Query timed out</remark>"))}, 2, diagnostics_, events);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_NE(warnings[0].find("b.osm: Overpass broke off: \"runtime error: Query timed out\""), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[1].find("several versions"), std::string::npos) << warnings[1];
+}
+
+TEST_F(OsmFootprints, WaysMaySayWhereTheirNodesLie) {
+  const std::string way = "<way id='9' version='1'><nd ref='1' lat='0' lon='0'/><nd ref='2' lat='0' lon='0.001'/><nd ref='3' lat='0.001' lon='0.001'/><nd ref='1' lat='0' lon='0'/>" + building + "</way>";
+  const auto footprints = read_osm_footprints({write("a.osm", osm(way))}, 2, diagnostics_);
+  ASSERT_EQ(footprints.size(), 1u);
+  EXPECT_NEAR(footprints[0].rings[0][2].y(), 0.001, 1e-9);
+  EXPECT_EQ(diagnostics_.total(), 0u);
 }
 
 TEST_F(OsmFootprints, UnusableFilesAreNamed) {

@@ -80,6 +80,15 @@ TEST(OsmStreets, MayStandBeforeTheirNodesAndNodesInAnyOrder) {
   EXPECT_NEAR((streets[1].lon_lat[1] - Eigen::Vector2d(11.1, 48.1)).norm(), 0, 1e-7);
 }
 
+TEST(OsmStreets, MaySayThemselvesWhereTheirNodesLie) {
+  const fs::path file = fresh("with_locations.osm");
+  std::ofstream(file) << "<?xml version='1.0'?><osm version='0.6'><way id='7' version='1'><nd ref='1' lat='48.1' lon='11.1'/><nd ref='2' lat='48.2' lon='11.2'/>"
+                         "<tag k='highway' v='residential'/></way></osm>";
+  const auto streets = read_osm_streets(file);
+  ASSERT_EQ(streets.size(), 1u);
+  EXPECT_NEAR((streets[0].lon_lat[1] - Eigen::Vector2d(11.2, 48.2)).norm(), 0, 1e-7);
+}
+
 TEST(OsmWriter, SameExtractSameBytes) {
   const fs::path a = fresh("a.osm.pbf"), b = fresh("b.osm.pbf");
   write_osm(a, two_houses());
