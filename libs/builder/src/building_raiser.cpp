@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace priormap {
 namespace {
@@ -45,12 +46,29 @@ void report_flat(const ProjectedFootprint& own, const char* why, Diagnostics& di
   diagnostics.add(DiagnosticCode::unsupported_roof, own.footprint.id, std::string("its roof shape ") + why + "; taken as flat");
 }
 
-RoofSpec roof_spec(const BuildingAttributes& attributes, double rise_m) {
-  return {attributes.roof_shape, rise_m, attributes.roof_direction_deg, attributes.ridge_across};
+/// Which way the wall looks that is nearest to a direction [degrees clockwise from the y axis]; the direction itself where none is within `most_deg`.
+double facing_of_nearest_wall(const Ring2& counter_clockwise, double direction_deg, double most_deg) {
+  double facing_deg = direction_deg, least_deg = most_deg;
+  for_each_edge(counter_clockwise, [&](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    const double outward_deg = std::atan2(b.y() - a.y(), a.x() - b.x()) * 180 / std::numbers::pi;
+    const double off_deg = std::abs(std::remainder(outward_deg - direction_deg, 360));
+    if (off_deg > least_deg) return;
+    least_deg = off_deg;
+    facing_deg = outward_deg;
+  });
+  return facing_deg;
+}
+
+RoofSpec roof_spec(const BuildingAttributes& attributes, const Polygon2& outline, double rise_m) {
+  RoofSpec spec{attributes.roof_shape, rise_m, attributes.roof_direction_deg, attributes.ridge_across};
+  if (spec.direction_deg && attributes.roof_direction_half_step_deg > 0)
+    spec.direction_deg = facing_of_nearest_wall(outline.exterior, *spec.direction_deg, attributes.roof_direction_half_step_deg);
+  return spec;
 }
 
 double run_m(const ProjectedFootprint& own, const BuildingAttributes& attributes) {
-  return attributes.roof_shape == RoofShape::flat ? 0 : roof_run_m(own.polygons.front(), roof_spec(attributes, 1));
+  const Polygon2& outline = own.polygons.front();
+  return attributes.roof_shape == RoofShape::flat ? 0 : roof_run_m(outline, roof_spec(attributes, outline, 1));
 }
 
 }  // namespace
@@ -95,7 +113,7 @@ BuildingSolid BuildingRaiser::solid(const Polygon2& outline, const BuildingAttri
   solid.has_walls = attributes.has_walls;
   solid.bounds = bounds_of(outline.exterior);
   if (attributes.roof_shape != RoofShape::flat && attributes.roof_shape != RoofShape::other) {
-    if (height.eaves_m < height.top_m) solid.roof = make_roof(outline, ground.median_z + height.eaves_m, roof_spec(attributes, height.top_m - height.eaves_m));
+    if (height.eaves_m < height.top_m) solid.roof = make_roof(outline, ground.median_z + height.eaves_m, roof_spec(attributes, outline, height.top_m - height.eaves_m));
     if (!solid.roof) report_flat(own, "cannot be built over its outline", diagnostics);
   }
   solid.eaves_z = solid.roof ? ground.median_z + height.eaves_m : solid.top_z;

@@ -45,8 +45,13 @@ struct PlaceBounds {
   Bounds2 as_they_are{infinity, infinity, -infinity, -infinity}, eastward = as_they_are;
 
   void extend(const Eigen::Vector2d& p) {
-    extend(as_they_are, p);
-    extend(eastward, {p.x() < 0 ? p.x() + 360 : p.x(), p.y()});
+    const double x = p.x() < 0 ? p.x() + 360 : p.x();
+    extend(as_they_are, {p.x(), p.y(), p.x(), p.y()});
+    extend(eastward, {x, p.y(), x, p.y()});
+  }
+  void extend(const PlaceBounds& other) {
+    extend(as_they_are, other.as_they_are);
+    extend(eastward, other.eastward);
   }
   Bounds2 of(const Crs& crs) const {
     const bool crosses = crs.is_geographic() && eastward.max_x - eastward.min_x < as_they_are.max_x - as_they_are.min_x;
@@ -54,17 +59,28 @@ struct PlaceBounds {
   }
 
  private:
-  static void extend(Bounds2& b, const Eigen::Vector2d& p) {
-    b = {std::min(b.min_x, p.x()), std::min(b.min_y, p.y()), std::max(b.max_x, p.x()), std::max(b.max_y, p.y())};
+  static void extend(Bounds2& a, const Bounds2& b) {
+    a = {std::min(a.min_x, b.min_x), std::min(a.min_y, b.min_y), std::max(a.max_x, b.max_x), std::max(a.max_y, b.max_y)};
   }
 };
 
+/// Far larger than any building: a wrong digit, which says nothing of where the data lie.
+bool is_implausible(const Bounds2& b, const Crs& crs) {
+  constexpr double longest_m = 20'000, metres_per_degree = 111'320;
+  const double unit_m = crs.is_geographic() ? metres_per_degree : crs.horizontal_unit_m();
+  return std::max(b.max_x - b.min_x, b.max_y - b.min_y) * unit_m > longest_m;
+}
+
 /// Of the footprints of each file, in its own CRS; without extent for a file without any.
-std::vector<PlaceBounds> bounds_by_file(const OutlineInput& input) {
+std::vector<PlaceBounds> bounds_by_file(const OutlineInput& input, const std::vector<InputCrs>& outlines) {
   std::vector<PlaceBounds> bounds(input.files.size());
-  for (const Footprint& footprint : input.footprints)
+  for (const Footprint& footprint : input.footprints) {
+    PlaceBounds own;
     for (const Ring2& ring : footprint.rings)
-      for (const Eigen::Vector2d& p : ring) bounds[footprint.file].extend(p);
+      for (const Eigen::Vector2d& p : ring) own.extend(p);
+    const Crs& crs = outlines[footprint.file].crs;
+    if (!is_implausible(own.of(crs), crs)) bounds[footprint.file].extend(own);
+  }
   return bounds;
 }
 
@@ -101,7 +117,7 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
   for (const InputCrs& outline : outlines) with_heights.push_back(terrain ? heights_of(*terrain, outline) : InputCrs{outline.crs, outline.assumed_vertical, outline.file, "--terrain"});
   if (surface) with_heights.push_back(heights_of(*surface, first));
 
-  const std::optional<LonLatArea> area = lon_lat_area(bounds_by_file(input), outlines);
+  const std::optional<LonLatArea> area = lon_lat_area(bounds_by_file(input, outlines), outlines);
   const Crs prior = resolve_prior_crs(prior_options, with_heights, area, events);
   if (!ground_given) events.warn("the ground under the buildings is taken as 0 m; give --terrain or --ground-height");
 

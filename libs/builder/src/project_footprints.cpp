@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <mutex>
+#include <numbers>
 
 #include <priormap/geodesy/interpolated_transformer.hpp>
 #include <priormap/tessellation/normalize.hpp>
@@ -12,6 +15,22 @@ namespace {
 
 constexpr std::size_t chunk_size = 512;
 constexpr double longest_building_m = 5000, largest_building_m2 = 10e6;
+
+/// Directions from true north become directions from the grid's.
+void turn_roof_directions(std::span<Footprint> footprints, InterpolatedTransformer& transformer) {
+  if (!transformer.exact().source().is_geographic()) return;
+  constexpr double step_deg = 1e-4;
+  for (Footprint& footprint : footprints) {
+    std::optional<double>& direction_deg = footprint.attributes.roof_direction_deg;
+    if (!direction_deg || footprint.rings.empty()) continue;
+    const Eigen::Vector2d& place = footprint.rings.front().front();
+    std::array<Eigen::Vector3d, 2> northward{{{place.x(), place.y() - step_deg, 0}, {place.x(), place.y() + step_deg, 0}}};
+    transformer.apply(northward);
+    const Eigen::Vector3d north = northward[1] - northward[0];
+    const double turned_deg = *direction_deg + std::atan2(north.x(), north.y()) * 180 / std::numbers::pi;
+    direction_deg = turned_deg - 360 * std::floor(turned_deg / 360);
+  }
+}
 
 /// All rings of a stretch of footprints at once.
 void transform(std::span<Footprint> footprints, InterpolatedTransformer& transformer) {
@@ -31,6 +50,7 @@ void transform_by_file(std::span<Footprint> footprints, std::vector<Interpolated
     const std::uint16_t file = footprints.front().file;
     const auto other = std::ranges::find_if(footprints, [&](const Footprint& footprint) { return footprint.file != file; });
     const auto count = static_cast<std::size_t>(other - footprints.begin());
+    turn_roof_directions(footprints.first(count), transformers[file]);
     transform(footprints.first(count), transformers[file]);
     footprints = footprints.subspan(count);
   }

@@ -11,6 +11,7 @@
 #include <priormap/sources/raster_writer.hpp>
 #include <random>
 #include <set>
+#include <tuple>
 
 namespace priormap {
 namespace {
@@ -52,6 +53,13 @@ class OutlinePrior : public testing::Test {
     return all;
   }
 
+  std::vector<Eigen::Vector3f> normals() {
+    const PriorStore store(folder_ / "prior");
+    std::vector<Eigen::Vector3f> all;
+    for (const TileEntry& tile : store.tiles()) std::ranges::copy(store.load(tile.key).points.normal, std::back_inserter(all));
+    return all;
+  }
+
   /// Ground: 500 m at x = 0, rising by `slope` to the east, with cells of 10 m and noise.
   fs::path write_terrain(double slope, double noise_m) {
     HeightGrid grid{east - 200, north + 300, 10, 60, 60, {}};
@@ -69,6 +77,43 @@ class OutlinePrior : public testing::Test {
   OutlineOptions outline_options_;
   Events events_;
 };
+
+TEST_F(OutlinePrior, RoofsSlopeFromTrueNorthNotFromTheGrids) {
+  Footprint shed{"way/1", {{{5.3, 60.4}, {5.3002, 60.4}, {5.3002, 60.4001}, {5.3, 60.4001}}}, {}};
+  shed.attributes.roof_shape = RoofShape::skillion;
+  shed.attributes.roof_direction_deg = 180;
+  options_.crs = "EPSG:25833";
+  OutlineInput input{FootprintList(std::vector{shed}), {{folder_ / "town.txt", std::string(64, '0')}}, {Crs::parse("EPSG:4326")}, "osm", "", ""};
+  build_outline_prior(std::move(input), options_, outline_options_, folder_ / "prior", Overwrite::refuse, "test", {}, 2, events_);
+  // Meridian convergence of zone 33 in Bergen: atan(tan(5.3 - 15) sin(60.4)) = -8.45 degrees, so that true south lies west of the grid's.
+  const double convergence = std::atan(std::tan((5.3 - 15) * M_PI / 180) * std::sin(60.4 * M_PI / 180));
+  std::size_t on_roof = 0;
+  for (const Eigen::Vector3f& normal : normals()) {
+    if (normal.z() < 0.3f) continue;
+    EXPECT_NEAR(std::atan2(normal.x(), -normal.y()), convergence, 1e-3);
+    ++on_roof;
+  }
+  EXPECT_GT(on_roof, 100u);
+}
+
+TEST_F(OutlinePrior, DirectionsInWordsMeanTheNearestWallAndNumbersThemselves) {
+  const double turn = -30 * M_PI / 180, c = std::cos(turn), s = std::sin(turn);   // clockwise
+  Footprint house = box("way/1", 0, 0, 10, 14);
+  for (Eigen::Vector2d& p : house.rings[0]) {
+    const Eigen::Vector2d d = p - Eigen::Vector2d(east, north);
+    p = Eigen::Vector2d(east + c * d.x() - s * d.y(), north + s * d.x() + c * d.y());
+  }
+  house.attributes.roof_shape = RoofShape::skillion;
+  for (const auto& [direction, half_step, expected] : {std::tuple(22.5, 11.25, 30.0), {45.0, 22.5, 30.0}, {45.0, 11.25, 45.0}, {22.5, 0.0, 22.5}}) {
+    house.attributes.roof_direction_deg = direction;
+    house.attributes.roof_direction_half_step_deg = half_step;
+    fs::remove_all(folder_ / "prior");
+    build({house});
+    for (const Eigen::Vector3f& normal : normals()) {
+      if (normal.z() > 0.3f) EXPECT_NEAR(std::atan2(normal.x(), normal.y()) * 180 / M_PI, expected, 0.1) << direction << " within " << half_step;
+    }
+  }
+}
 
 TEST_F(OutlinePrior, ABlockHasWallsAndARoof) {
   const OutlineReport report = build({box("a", 0, 0, 10, 6)});

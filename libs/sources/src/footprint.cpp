@@ -20,6 +20,7 @@ void pack(const BuildingAttributes& attributes, ByteWriter& out) {
   out.put(known);
   for (const auto* number : numbers)
     if (*number) out.put(**number);
+  if (attributes.roof_direction_deg) out.put(attributes.roof_direction_half_step_deg);
   out.put(attributes.roof_shape);
   out.put(attributes.ridge_across);
   out.put(attributes.has_walls);
@@ -30,6 +31,7 @@ void unpack(ByteReader& in, BuildingAttributes& attributes) {
   const auto numbers = optional_numbers(attributes);
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (known >> i & 1) *numbers[i] = in.get<double>();
+  if (attributes.roof_direction_deg) attributes.roof_direction_half_step_deg = in.get<double>();
   attributes.roof_shape = in.get<RoofShape>();
   attributes.ridge_across = in.get<bool>();
   attributes.has_walls = in.get<bool>();

@@ -318,7 +318,10 @@ class FootprintAssembly {
     fill(attributes.roof_levels, from.roof_levels);
     fill(attributes.roof_height_m, from.roof_height_m);
     fill(attributes.roof_angle_deg, from.roof_angle_deg);
-    fill(attributes.roof_direction_deg, from.roof_direction_deg);
+    if (!attributes.roof_direction_deg) {
+      attributes.roof_direction_deg = from.roof_direction_deg;
+      attributes.roof_direction_half_step_deg = from.roof_direction_half_step_deg;
+    }
     if (attributes.roof_shape == RoofShape::flat) attributes.roof_shape = from.roof_shape;
   }
 

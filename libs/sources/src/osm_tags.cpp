@@ -75,6 +75,22 @@ std::optional<double> inches_m(std::string_view text) {
 constexpr std::array<std::string_view, 16> compass{"n",  "nne", "ne", "ene", "e",  "ese", "se", "sse",
                                                    "s",  "ssw", "sw", "wsw", "w",  "wnw", "nw", "nnw"};
 
+/// "North-West" to "nw".
+std::string compass_letters(std::string_view text) {
+  std::string letters = lower_case(text);
+  std::erase_if(letters, [](char c) { return c == '-' || c == ' ' || c == '_'; });
+  for (const std::string_view word : {"north", "south", "east", "west"})
+    for (std::size_t at = letters.find(word); at != std::string::npos; at = letters.find(word)) letters.erase(at + 1, word.size() - 1);
+  return letters;
+}
+
+/// 0 to 360.
+std::optional<double> parse_degrees(std::string_view text) {
+  const std::optional<double> number = take_number(text);
+  take(text, "\u00b0");
+  return number && trimmed(text).empty() && *number <= 360 ? number : std::nullopt;
+}
+
 bool is_one_of(std::string_view value, std::initializer_list<std::string_view> values) {
   return std::ranges::find(values, value) != values.end();
 }
@@ -107,11 +123,17 @@ std::optional<double> parse_storeys(std::string_view text) {
 
 std::optional<double> parse_direction_deg(std::string_view text) {
   text = trimmed(text);
-  const auto point = std::ranges::find(compass, lower_case(text));
+  const auto point = std::ranges::find(compass, compass_letters(text));
   if (point != compass.end()) return 22.5 * static_cast<double>(point - compass.begin());
-  const std::optional<double> number = take_number(text);
-  take(text, "\u00b0");
-  return number && trimmed(text).empty() && *number <= 360 ? number : std::nullopt;
+  const bool is_negative = take(text, "-");
+  const std::optional<double> number = parse_degrees(text);
+  return !number || *number == 0 || !is_negative ? number : 360 - *number;
+}
+
+double compass_half_step_deg(std::string_view text) {
+  const std::string letters = compass_letters(trimmed(text));
+  if (std::ranges::find(compass, letters) == compass.end()) return 0;
+  return letters.size() == 3 ? 11.25 : 22.5;
 }
 
 RoofShape parse_roof_shape(std::string_view text) {
@@ -119,8 +141,8 @@ RoofShape parse_roof_shape(std::string_view text) {
     std::string_view name;
     RoofShape shape;
   };
-  static constexpr std::array<Name, 22> names{{{"flat", RoofShape::flat}, {"gabled", RoofShape::gabled}, {"pitched", RoofShape::gabled}, {"saltbox", RoofShape::gabled},
-      {"hipped", RoofShape::hipped}, {"side_hipped", RoofShape::hipped}, {"half-hipped", RoofShape::half_hipped}, {"half_hipped", RoofShape::half_hipped},
+  static constexpr std::array<Name, 20> names{{{"flat", RoofShape::flat}, {"gabled", RoofShape::gabled}, {"pitched", RoofShape::gabled},
+      {"hipped", RoofShape::hipped}, {"half-hipped", RoofShape::half_hipped}, {"half_hipped", RoofShape::half_hipped},
       {"pyramidal", RoofShape::pyramidal}, {"tented", RoofShape::pyramidal}, {"skillion", RoofShape::skillion}, {"lean_to", RoofShape::skillion}, {"gambrel", RoofShape::gambrel},
       {"mansard", RoofShape::mansard}, {"round", RoofShape::round}, {"arch", RoofShape::round}, {"barrel", RoofShape::round}, {"cone", RoofShape::cone},
       {"conical", RoofShape::cone}, {"dome", RoofShape::dome}, {"half-dome", RoofShape::dome}, {"onion", RoofShape::onion}}};
@@ -197,8 +219,9 @@ BuildingAttributes OsmBuildingTags::attributes(const std::string& feature, Diagn
   attributes.min_level = read("building:min_level", min_level_, parse_storeys, 0, most_storeys);
   attributes.roof_levels = read("roof:levels", roof_levels_, parse_storeys, 0, most_storeys);
   attributes.roof_height_m = read("roof:height", roof_height_, parse_length_m, 0, highest_building_m);
-  attributes.roof_angle_deg = read("roof:angle", roof_angle_, parse_direction_deg, 0, 89);
+  attributes.roof_angle_deg = read("roof:angle", roof_angle_, [](std::string_view text) { return parse_degrees(trimmed(text)); }, 0, 89);
   attributes.roof_direction_deg = read("roof:direction", roof_direction_, parse_direction_deg, 0, 360);
+  if (attributes.roof_direction_deg) attributes.roof_direction_half_step_deg = compass_half_step_deg(roof_direction_);
   attributes.roof_shape = roof_shape_.empty() ? RoofShape::flat : parse_roof_shape(roof_shape_);
   attributes.ridge_across = roof_orientation_ == "across";
   attributes.has_walls = !no_walls_;

@@ -32,6 +32,13 @@ TEST(OsmTags, Directions) {
   EXPECT_EQ(parse_direction_deg("NW"), 315);
   EXPECT_EQ(parse_direction_deg("219.6"), 219.6);
   EXPECT_EQ(parse_direction_deg("90\u00b0"), 90);
+  EXPECT_EQ(parse_direction_deg("-90"), 270);
+  for (const char* words : {"north-west", "Northwest", "north west"}) EXPECT_EQ(parse_direction_deg(words), 315) << words;
+  EXPECT_EQ(parse_direction_deg("south-southeast"), 157.5);
+  EXPECT_EQ(parse_direction_deg("east"), 90);
+  EXPECT_EQ(compass_half_step_deg("NW"), 22.5);
+  EXPECT_EQ(compass_half_step_deg("north-northwest"), 11.25);
+  EXPECT_EQ(compass_half_step_deg("315"), 0);
   EXPECT_FALSE(parse_direction_deg("up"));
   EXPECT_FALSE(parse_direction_deg("400"));
 }

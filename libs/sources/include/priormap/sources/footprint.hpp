@@ -19,7 +19,8 @@ struct BuildingAttributes {
   std::optional<double> roof_levels;
   std::optional<double> roof_height_m;
   std::optional<double> roof_angle_deg;      ///< slope
-  std::optional<double> roof_direction_deg;  ///< down the slope, clockwise from north
+  std::optional<double> roof_direction_deg;  ///< down the slope, clockwise from true north; in the prior's CRS from its grid's
+  double roof_direction_half_step_deg = 0;   ///< of the compass whose point names the direction: a wall that near is meant; 0: a number, as it stands
   RoofShape roof_shape = RoofShape::flat;
   bool ridge_across = false;  ///< the ridge runs along the shorter side
   bool has_walls = true;      ///< false: a roof on posts

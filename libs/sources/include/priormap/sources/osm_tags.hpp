@@ -12,8 +12,10 @@ namespace priormap {
 std::optional<double> parse_length_m(std::string_view text);
 /// A count of storeys, halves allowed: "3", "2.5", "2,5". nullopt for anything else.
 std::optional<double> parse_storeys(std::string_view text);
-/// "90", "90°", "NW": degrees clockwise from north.
+/// "90", "90°", "-270", "NW", "north-west": degrees clockwise from north, 0 to 360.
 std::optional<double> parse_direction_deg(std::string_view text);
+/// Half a step of the compass that a direction in words comes from: 22.5 of those with eight points ("NW"), 11.25 of those with sixteen ("NNW"); 0 for numbers.
+double compass_half_step_deg(std::string_view text);
 /// `other` for a shape that priormap does not build.
 RoofShape parse_roof_shape(std::string_view text);
 
