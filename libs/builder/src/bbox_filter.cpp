@@ -18,7 +18,7 @@ bool overlap(const Bounds2& a, const Bounds2& b) { return a.min_x <= b.max_x && 
 
 /// What may be wrong with a box that misses the data. @param there  the data in the box's CRS
 std::string advice(const PriorOptions& options, const Bounds2& data, const Crs& data_crs, const std::optional<Bounds2>& there) {
-  const Bounds2 box{options.bbox[0], options.bbox[1], options.bbox[2], options.bbox[3]};
+  const Bounds2 box = options.box();
   const bool are_degrees = bbox_crs(options).is_geographic();
   if (there && overlap(*there, {box.min_y, box.min_x, box.max_y, box.max_x})) return ": were the box's numbers given as S,W,N,E?";
   if (!data.empty() && overlap(data, box) && !bbox_crs(options).equivalent_to(data_crs.horizontal())) return ": is the box in their CRS? --bbox-crs " + data_crs.horizontal().name() + " says so";
@@ -31,8 +31,9 @@ std::string advice(const PriorOptions& options, const Bounds2& data, const Crs& 
 
 BboxFilter::BboxFilter(const PriorOptions& options, const Crs& prior) {
   if (options.bbox.empty()) return;
-  bbox_ = Bounds2{options.bbox[0], options.bbox[1], options.bbox[2], options.bbox[3]};
+  bbox_ = options.box();
   prior_from_bbox_.emplace(bbox_crs(options), prior.horizontal());
+  prior_from_bbox_->keep_source_longitudes_around(0.5 * (bbox_->min_x + bbox_->max_x));
   if (prior_from_bbox_->is_identity()) {
     prior_from_bbox_.reset();
     outer_ = inner_ = *bbox_;

@@ -114,8 +114,7 @@ AreaDistortion distortion_over(const Crs& crs, const LonLatArea& area) {
 /// Of the inputs' area and that of --bbox, which may take a corner of them, the one that fits the CRS better.
 LonLatArea best_area(const Crs& crs, const PriorOptions& options, const LonLatArea& area) {
   if (options.bbox.empty()) return area;
-  const std::vector<double>& b = options.bbox;
-  const std::optional<LonLatArea> box = lon_lat_area({b[0], b[1], b[2], b[3]}, horizontal_option_crs("--bbox-crs", options.bbox_crs));
+  const std::optional<LonLatArea> box = lon_lat_area(options.box(), horizontal_option_crs("--bbox-crs", options.bbox_crs));
   if (!box) return area;
   const auto misfit = [&](const LonLatArea& a) { return std::pair(distortion_over(crs, a).at_data().is_too_much(), degrees_outside(crs, a.middle())); };
   return misfit(*box) < misfit(area) ? *box : area;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <priormap/core/error.hpp>
+#include <priormap/geodesy/option_crs.hpp>
 
 #include "data_license.hpp"
 
@@ -24,15 +25,23 @@ bool is_date(const std::string& text) {
       .ok();
 }
 
+bool crosses_antimeridian(const PriorOptions& options) {
+  const double west = options.bbox[0], east = options.bbox[2];
+  return west > 0 && west <= 180 && east < 0 && east >= -180 && horizontal_option_crs("--bbox-crs", options.bbox_crs).is_geographic();
+}
+
 }  // namespace
+
+Bounds2 PriorOptions::box() const { return {bbox[0], bbox[1], crosses_antimeridian(*this) ? bbox[2] + 360 : bbox[2], bbox[3]}; }
 
 void PriorOptions::validate(const Events& events) const {
   if (!bbox.empty()) {
     if (bbox.size() != 4) throw UsageError("--bbox needs four numbers: west,south,east,north");
     for (double v : bbox)
       if (!std::isfinite(v)) throw UsageError("--bbox needs four finite numbers: west,south,east,north");
-    if (!(bbox[0] < bbox[2] && bbox[1] < bbox[3]))
-      throw UsageError("--bbox is empty: west must be less than east and south less than north (west,south,east,north)");
+    const Bounds2 b = box();
+    if (!(b.min_x < b.max_x && b.min_y < b.max_y))
+      throw UsageError("--bbox is empty: west must be less than east and south less than north (west,south,east,north; only across the antimeridian west is greater, as in 179,-18,-179,-17)");
   }
   if (!date.empty() && !is_date(date)) throw UsageError("--date '" + date + "' is no date of the form YYYY-MM-DD");
   if (const auto doubt = license_doubt(license)) events.warn(*doubt);

@@ -89,8 +89,7 @@ LonLatArea area_of(const std::vector<RasterInput>& inputs, const PriorOptions& o
   LonLatArea all = area_of_one(inputs.front());
   for (const RasterInput& input : inputs) all = united(all, area_of_one(input));
   if (all.width_deg() <= zone_width_deg || options.bbox.empty()) return all;
-  const std::vector<double>& b = options.bbox;
-  return lon_lat_area({b[0], b[1], b[2], b[3]}, horizontal_option_crs("--bbox-crs", options.bbox_crs)).value_or(all);
+  return lon_lat_area(options.box(), horizontal_option_crs("--bbox-crs", options.bbox_crs)).value_or(all);
 }
 
 Crs prior_crs(const std::vector<RasterInput>& inputs, const PriorOptions& options, const Events& events) {

@@ -61,6 +61,22 @@ TEST(BboxFilter, neighbouring_boxes_share_no_point_and_lose_none) {
   EXPECT_EQ(count(11.55, 48.12, 11.57, 48.14) + count(11.57, 48.12, 11.59, 48.14) + count(11.55, 48.14, 11.57, 48.16) + count(11.57, 48.14, 11.59, 48.16), whole);
 }
 
+TEST(BboxFilter, may_cross_the_antimeridian) {
+  const Crs zone_60 = Crs::parse("EPSG:32760");
+  const Transformer from_lon_lat(Crs::parse("EPSG:4326"), zone_60);
+  for (const std::vector<double>& box : {std::vector<double>{179, -18, -179, -17}, {179, -18, 181, -17}, {-181, -18, -179, -17}}) {
+    const BboxFilter filter(with_bbox(box), zone_60);
+    for (const double lon : {179.5, 180.0, -179.5}) {
+      const Eigen::Vector3d p = from_lon_lat.forward({lon, -17.5, 0});
+      EXPECT_TRUE(filter.contains(p.x(), p.y())) << lon;
+    }
+    for (const double lon : {178.5, -178.5}) {
+      const Eigen::Vector3d p = from_lon_lat.forward({lon, -17.5, 0});
+      EXPECT_FALSE(filter.contains(p.x(), p.y())) << lon;
+    }
+  }
+}
+
 TEST(BboxFilter, in_the_priors_crs_is_half_open) {
   const BboxFilter filter(with_bbox({691000, 5336000, 691010, 5336010}, "EPSG:25832"), prior);
   EXPECT_TRUE(filter.contains(691000, 5336000));

@@ -14,6 +14,8 @@ TEST(PriorOptions, a_bbox_is_four_numbers_with_extent) {
   EXPECT_NO_THROW(options.validate());
   options.bbox = {7, 43, 8, 44};
   EXPECT_NO_THROW(options.validate());
+  options.bbox = {179, -18, -179, -17};
+  EXPECT_NO_THROW(options.validate()) << "across the antimeridian";
   for (const std::vector<double>& bad : {std::vector<double>{7, 43, 8}, {8, 43, 7, 44}, {7, 44, 8, 44}, {7, 43, 8, HUGE_VAL}}) {
     options.bbox = bad;
     EXPECT_THROW(options.validate(), UsageError);

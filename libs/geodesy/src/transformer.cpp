@@ -163,7 +163,8 @@ struct Transformer::Impl {
     if (points.empty()) return;
     if (pipeline) run_pipeline(direction, points);
     if (const std::optional<double>& middle_deg = direction == PJ_FWD ? middle_of_target_deg : middle_of_source_deg)
-      for (Eigen::Vector3d& point : points) point.x() = *middle_deg + std::remainder(point.x() - *middle_deg, 360);
+      for (Eigen::Vector3d& point : points)
+        if (std::abs(point.x() - *middle_deg) > 180) point.x() -= 360 * std::round((point.x() - *middle_deg) / 360);
     if (heights.factor == 1) return;
     const double factor = direction == PJ_FWD ? heights.factor : 1 / heights.factor;
     for (Eigen::Vector3d& point : points) point.z() *= factor;

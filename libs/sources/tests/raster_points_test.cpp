@@ -266,5 +266,17 @@ TEST_F(RasterPointsTest, coarse_cells_keep_the_millimetre) {
   }
 }
 
+TEST_F(RasterPointsTest, no_cell_is_lost_at_the_antimeridian_however_longitudes_are_counted) {
+  const Crs lon_lat = Crs::parse("EPSG:4326"), zone_60 = Crs::parse("EPSG:32760");
+  const double cell = 1e-5;
+  for (const double west : {179.9998, 180 - 40 * cell, -180.0002, -180.0, 177.0}) {
+    const fs::path file = write({.width = 40, .height = 40, .transform = {west, cell, 0, -17, 0, -cell}, .crs = "EPSG:4326"});
+    EXPECT_EQ(read(file, lon_lat, zone_60).size(), 1600u) << west;
+    const HeightRaster raster = HeightRaster::open(file, std::nullopt, zone_60);
+    const Eigen::Vector3d middle = Transformer(lon_lat, zone_60).forward({west + 20.5 * cell, -17 - 20.5 * cell, 0});
+    EXPECT_NEAR(raster.at(middle.x(), middle.y()).value_or(-1), 20 + 100 * 20, 1e-2) << west;
+  }
+}
+
 }  // namespace
 }  // namespace priormap

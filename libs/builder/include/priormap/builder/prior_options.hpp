@@ -14,7 +14,7 @@ struct PriorOptions {
   std::string crs;              ///< of the prior, projected
   std::string source_crs;       ///< declares or overrides the input's CRS
   std::string assume_vertical;  ///< vertical CRS that undeclared heights are taken for
-  std::vector<double> bbox;     ///< west, south, east, north in `bbox_crs`, half-open; empty: everything
+  std::vector<double> bbox;     ///< west, south, east, north in `bbox_crs`, half-open; empty: everything; east of west but across the antimeridian (179,-18,-179,-17)
   std::string bbox_crs = "EPSG:4326";
   std::optional<double> spacing_m;  ///< none: the source's own sampling, or 0.5 m where it has none
   double tile_size_m = 200;
@@ -39,6 +39,8 @@ struct PriorOptions {
   /// @throws UsageError for a bbox that is not four numbers with W < E and S < N, or a date that is no date.
   /// Warns of a licence that is no SPDX identifier.
   void validate(const Events& events = {}) const;
+  /// Of a valid bbox that is not empty: its east counts on beyond 180 degrees where it crosses the antimeridian.
+  Bounds2 box() const;
   double spacing_or(double fallback_m) const { return spacing_m.value_or(fallback_m); }
 };
 
