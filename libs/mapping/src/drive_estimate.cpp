@@ -267,17 +267,28 @@ class DriveGraph {
 };
 
 /// Where the scans of a stretch, all together, fit clearly better.
-std::optional<Eigen::Vector2d> common_shift(const DriveGraph& graph, const std::vector<std::size_t>& stretch, PriorComparison& comparison, ScansAgain& scans) {
+std::optional<Eigen::Vector2d> common_shift(const DriveGraph& graph, const std::vector<std::size_t>& stretch, PriorComparison& comparison, ScansAgain& scans, int threads) {
   constexpr std::size_t least_scans = 8, most_scans = 20;
   const std::size_t count = std::min(stretch.size(), most_scans);
   if (count < least_scans) return std::nullopt;
   ShiftScores scores;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t k = stretch[i * stretch.size() / count];
-    comparison.move_to(graph.pose(k).translation());
-    const auto surfels = scans.surfels_of(k, graph.record(k));
-    scores.add(i, count, comparison.improvements(*surfels, graph.pose(k)), surfels->size());
+  struct Improvements {
+    std::vector<double> at_shifts;
+    std::size_t num_surfels = 0;
+  };
+  std::vector<Improvements> found(count);
+  const auto key = [&](std::size_t i) { return stretch[i * stretch.size() / count]; };
+  const auto position = [&](std::size_t i) { return graph.pose(key(i)).translation(); };
+  for (std::size_t first = 0, last = 0; first < count; first = last) {
+    while (last < count && (position(last) - position(first)).norm() <= PriorComparison::together_m) ++last;
+    comparison.move_to(position(first));
+    parallel_for(last - first, threads, [&](std::size_t j) {
+      const std::size_t i = first + j;
+      const auto surfels = scans.surfels_of(key(i), graph.record(key(i)));
+      found[i] = {comparison.improvements(*surfels, graph.pose(key(i))), surfels->size()};
+    });
   }
+  for (std::size_t i = 0; i < count; ++i) scores.add(i, count, found[i].at_shifts, found[i].num_surfels);
   return scores.clear();
 }
 
@@ -316,7 +327,7 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
     bool any = false;
     PriorComparison comparison(*prior, pieces, options);
     for (const std::vector<std::size_t>& stretch : graph.stretches())
-      if (const auto shift_m = common_shift(graph, stretch, comparison, scans)) graph.shift(stretch, *shift_m), any = true;
+      if (const auto shift_m = common_shift(graph, stretch, comparison, scans, prior->threads())) graph.shift(stretch, *shift_m), any = true;
     return any;
   };
   const auto vote = [&] {

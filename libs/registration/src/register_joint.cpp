@@ -185,14 +185,15 @@ class TargetState {
 
   /// By how much upright matches fit better than at the remembered pose; what has none at one of both says nothing, or poses with few matches would win.
   double improvement(const kernels::Table& table, const SourceColumns& columns, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) {
-    constexpr float most_level = 0.7f;
     look_up(table, columns, T_map_scan, options);
-    const auto is_upright = [&](const Columns& c, std::size_t i) { return c[whitened][i] >= 0 && std::abs(c[normal_z][i]) < most_level; };
     double sum = 0;
     for (std::size_t i = 0; i < count_; ++i)
       if (is_upright(columns_, i) && is_upright(remembered_, i)) sum += fit(columns_, i, options) - fit(remembered_, i, options);
     return target_.weight * sum;
   }
+
+  /// Whether surfel `i` met a wall at the remembered pose.
+  bool remembers_wall(std::size_t i) const { return is_upright(remembered_, i); }
 
   /// What speaks for a pose rather than for the remembered one.
   double gain(const kernels::Table& table, const SourceColumns& columns, const Eigen::Isometry3d& T_map_scan, const JointOptions& options) {
@@ -203,6 +204,11 @@ class TargetState {
  private:
   enum Column { x, y, z, searched_x, searched_y, searched_z, mean_x, mean_y, mean_z, normal_x, normal_y, normal_z, isotropic, directed, variance, whitened };
   using Columns = std::array<std::vector<float>, whitened + 1>;
+
+  static bool is_upright(const Columns& c, std::size_t i) {
+    constexpr float most_level = 0.7f;
+    return c[whitened][i] >= 0 && std::abs(c[normal_z][i]) < most_level;
+  }
 
   double fit(const Columns& c, std::size_t i, const JointOptions& options) const {
     const double width2 = options.kernel_width * options.kernel_width;
@@ -467,6 +473,14 @@ std::vector<JointTarget> blurred(std::span<const JointTarget> targets, double si
   return wider;
 }
 
+SurfelCloud every(const SurfelCloud& scan, std::size_t stride) {
+  if (stride <= 1) return scan;
+  SurfelCloud some{scan.origin, {}, {}};
+  for (std::size_t i = 0; i < scan.size(); i += stride) some.surfels.push_back(scan.surfels[i]);
+  for (std::size_t i = 0; i < scan.normals.size(); i += stride) some.normals.push_back(scan.normals[i]);
+  return some;
+}
+
 bool same_place(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   constexpr double near_m = 0.3, near_rad = 0.01;
   const Vector6d apart = local_coordinates(a, b);
@@ -482,13 +496,26 @@ double JointRegistration::score(const SurfelCloud& scan, std::span<const JointTa
 
 std::vector<double> JointRegistration::improvements(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan,
                                                     std::span<const Eigen::Isometry3d> elsewhere, double sigma_m) {
-  workspace_->prepare(scan, blurred(targets, sigma_m), T_map_scan, options_, 1);
-  remember(T_map_scan);
+  const auto begin = [&](const SurfelCloud& surfels) {
+    workspace_->prepare(surfels, blurred(targets, sigma_m), T_map_scan, options_, 1);
+    remember(T_map_scan);
+  };
+  begin(scan);
+  SurfelCloud of_walls{scan.origin, {}, {}};   // the others, most of a scan, say nothing
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (std::ranges::none_of(workspace_->targets, [&](const TargetState& target) { return target.remembers_wall(i); })) continue;
+    of_walls.surfels.push_back(scan.surfels[i]);
+    if (!scan.normals.empty()) of_walls.normals.push_back(scan.normals[i]);
+  }
+  constexpr std::size_t most_surfels = 500;
+  const SurfelCloud some = every(of_walls, (of_walls.size() + most_surfels - 1) / most_surfels);
+  begin(some);
+  const double of_each = some.empty() ? 0 : static_cast<double>(of_walls.size()) / static_cast<double>(some.size());
   std::vector<double> improvements;
   for (const Eigen::Isometry3d& T : elsewhere) {
     double sum = 0;
     for (TargetState& target : workspace_->targets) sum += target.improvement(*workspace_->table, workspace_->source, T, options_);
-    improvements.push_back(sum);
+    improvements.push_back(of_each * sum);
   }
   return improvements;
 }

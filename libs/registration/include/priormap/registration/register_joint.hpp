@@ -119,7 +119,7 @@ class JointRegistration {
 
   /// How well a scan fits at a pose: 0.15 for each surfel that does, down to -0.85 for one whose nearest plane is far off; none for one that the maps do not know.
   double score(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan, double sigma_m);
-  /// By how much a scan fits walls better at each of some poses nearby: up to 1 for each surfel that has a match at both.
+  /// By how much a scan fits walls better at each of some poses nearby: up to 1 for each surfel that has a match at both (some hundred of them stand for all).
   std::vector<double> improvements(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan, std::span<const Eigen::Isometry3d> elsewhere, double sigma_m);
 
   /// Which planes of target `t` the last `align` compared with, at the pose it returned but for its last step.
