@@ -279,7 +279,7 @@ std::optional<Eigen::Vector2d> common_shift(const DriveGraph& graph, const std::
   std::vector<Improvements> found(count);
   const auto key = [&](std::size_t i) { return stretch[i * stretch.size() / count]; };
   const auto position = [&](std::size_t i) { return graph.pose(key(i)).translation(); };
-  for (std::size_t first = 0, last = 0; first < count; first = last) {
+  for (std::size_t first = 0, last = 1; first < count; first = last++) {
     while (last < count && (position(last) - position(first)).norm() <= PriorComparison::together_m) ++last;
     comparison.move_to(position(first));
     parallel_for(last - first, threads, [&](std::size_t j) {
