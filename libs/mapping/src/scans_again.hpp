@@ -5,10 +5,11 @@
 #include <vector>
 
 #include <priormap/core/reused.hpp>
+#include <priormap/mapping/mapper.hpp>
 #include <priormap/registration/scan_reducer.hpp>
 #include <priormap/registration/surfel.hpp>
 
-#include "drive_estimate.hpp"
+#include "scan_record.hpp"
 
 namespace priormap {
 

@@ -8,7 +8,7 @@
 #include <priormap/mapping/mapper_options.hpp>
 #include <priormap/mapping/scan_source.hpp>
 
-#include "drive_estimate.hpp"
+#include "scan_record.hpp"
 #include "mapping_method.hpp"
 #include "odometry.hpp"
 

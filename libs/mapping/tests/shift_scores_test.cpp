@@ -1,4 +1,4 @@
-#include "common_shift.hpp"
+#include "shift_scores.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ ShiftScores scores_of_drive(const street::World& world, const PointCloud& points
   return scores;
 }
 
-TEST(CommonShift, LeadsBackToWhereTheScansWereTaken) {
+TEST(ShiftScores, LeadsBackToWhereTheScansWereTaken) {
   const street::World world = street::town(100, 3);
   for (const Eigen::Vector2d& off_m : {Eigen::Vector2d(0.45, -0.3), Eigen::Vector2d(-0.6, 0)}) {
     const auto shift_m = scores_of_drive(world, street::sample(world, 0.5, 0.0f), off_m).clear();
@@ -37,18 +37,18 @@ TEST(CommonShift, LeadsBackToWhereTheScansWereTaken) {
   }
 }
 
-TEST(CommonShift, IsNoneWhereTheDriveIsRight) {
+TEST(ShiftScores, IsNoneWhereTheDriveIsRight) {
   const street::World world = street::town(100, 3);
   EXPECT_FALSE(scores_of_drive(world, street::sample(world, 0.5, 0.0f), {0, 0}).clear());
 }
 
-TEST(CommonShift, IsNoneBeyondWhatIsCompared) {
+TEST(ShiftScores, IsNoneBeyondWhatIsCompared) {
   const street::World world = street::town(100, 3);
   EXPECT_FALSE(scores_of_drive(world, street::sample(world, 0.5, 0.0f), {1.5, 0}).clear());
 }
 
 /// Of the ground of one side of the street alone, 0.4 m too high: away from it nothing fits badly, for nothing is known.
-TEST(CommonShift, OfGroundIsNone) {
+TEST(ShiftScores, OfGroundIsNone) {
   const street::World world = street::town(100, 3);
   const PointCloud all = street::sample(world, 0.5, 0.0f);
   PointCloud ground;
@@ -72,7 +72,7 @@ ShiftScores scores_of_parts(const std::array<Eigen::Vector2d, 4>& best_m, double
   return scores;
 }
 
-TEST(CommonShift, IsNotWhatOnePartOfAStretchSaysAlone) {
+TEST(ShiftScores, IsNotWhatOnePartOfAStretchSaysAlone) {
   const Eigen::Vector2d here(0.3, 0.3), there(-0.3, 0.15), at_rest(0, 0);
   EXPECT_EQ(scores_of_parts({here, here, here, here}, 0.004).clear(), here);
   EXPECT_EQ(scores_of_parts({here, here, here, at_rest}, 0.004).clear(), here);
@@ -80,7 +80,7 @@ TEST(CommonShift, IsNotWhatOnePartOfAStretchSaysAlone) {
   EXPECT_FALSE(scores_of_parts({here, here, here, here}, 0.001).clear());   // as chance gains
 }
 
-TEST(CommonShift, OfAllAlikeIsNone) {
+TEST(ShiftScores, OfAllAlikeIsNone) {
   ShiftScores scores;
   for (std::size_t i = 0; i < 8; ++i) scores.add(i, 8, std::vector<double>(ShiftScores::shifts().size(), 100), 1000);
   EXPECT_FALSE(scores.clear());
