@@ -8,15 +8,6 @@
 #include "sweep_motion.hpp"
 
 namespace priormap {
-namespace {
-
-SurfelCloud every(const SurfelCloud& scan, std::size_t stride) {
-  SurfelCloud some{scan.origin, {}, {}};
-  for (std::size_t i = 0; i < scan.size(); i += std::max<std::size_t>(stride, 1)) some.surfels.push_back(scan.surfels[i]);
-  return some;
-}
-
-}  // namespace
 
 /// Ground fits ground anywhere: a scan of another street has more than half its planes fit. But never as they did in the scans before.
 bool UsualFit::admit(const TargetResult& match, bool after_loss) const {
@@ -147,7 +138,8 @@ std::optional<OdometryStep> Odometry::found_straight_on(const SurfelCloud& scan)
 std::optional<OdometryStep> Odometry::found_around(const SurfelCloud& scan, const OdometryStep& found) {
   constexpr double radius_m = 20, behind_m = 4, clear_gain = 0.05;   // a surfel
   constexpr std::size_t surfels = 150;
-  const SurfelCloud some = every(scan, scan.size() / surfels);
+  SurfelCloud some = every(scan, std::max<std::size_t>(scan.size() / surfels, 1));
+  some.around.clear();   // registered as if of many lasers; the wider kernel was not tried here
   const PoseSearchOptions starts{.radius_m = radius_m, .yaw_rad = 1.2, .step_m = 3, .step_rad = 0.1, .surfels = surfels, .refined = std::numeric_limits<int>::max()};
   Eigen::Isometry3d centre = T_odom_last_;
   if (const double speed_m_s = velocity_.tail<3>().norm(); speed_m_s > 0) centre.translation() += (radius_m - behind_m) / speed_m_s * (centre.linear() * velocity_.tail<3>());

@@ -14,24 +14,14 @@ namespace {
 
 double translation_information(const Matrix6d& information) { return information.bottomRightCorner<3, 3>().trace(); }
 
-SurfelCloud thinned(const SurfelCloud& scan, std::size_t stride) {
-  SurfelCloud some{scan.origin, {}, {}};
-  for (std::size_t i = 0; i < scan.size(); i += stride) some.surfels.push_back(scan.surfels[i]);
-  for (std::size_t i = 0; i < scan.around.size(); i += stride) some.around.push_back(scan.around[i]);
-  return some;
-}
-
 /// The scan with its normals, without roofs: they would lift the pose where no ground holds it.
 SurfelCloud without_roofs(SurfelCloud scan, const Eigen::Matrix3d& R_map_sensor, double voxel_m) {
   tell_normals(scan, voxel_m);
   const Eigen::Matrix3f R = R_map_sensor.cast<float>();
-  SurfelCloud kept{scan.origin, {}, {}};
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (is_above_street((R * scan.surfels[i].mean).cast<double>()) && !is_wall(R.row(2).dot(scan.normals[i]))) continue;
-    kept.surfels.push_back(scan.surfels[i]);
-    kept.normals.push_back(scan.normals[i]);
-  }
-  return kept;
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    if (!is_above_street((R * scan.surfels[i].mean).cast<double>()) || is_wall(R.row(2).dot(scan.normals[i]))) kept.push_back(i);
+  return selected(scan, kept);
 }
 
 }  // namespace
@@ -138,7 +128,7 @@ std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, co
   // Once the drive has been found in the prior, some thousand surfels hold it there as well as all.
   constexpr std::size_t most_surfels = 3000;
   const std::size_t stride = num_heard_ < options_.start_keyframes ? 1 : (whole_scan.size() + most_surfels - 1) / most_surfels;
-  const SurfelCloud scan = without_roofs(thinned(whole_scan, stride), guess.linear(), scan_voxel_m_);
+  const SurfelCloud scan = without_roofs(every(whole_scan, stride), guess.linear(), scan_voxel_m_);
   if (scan.empty()) return std::nullopt;
   const PriorSurfels& map = prior_->around(guess.translation());
   const auto targets = map.targets(options_.prior_sigma_m, prior_weights_);

@@ -24,20 +24,18 @@ struct SourceColumns {
   bool sparse = false;   // of few lasers
   std::vector<Eigen::Vector3f> normals;   // in sensor axes, as in SurfelCloud
 
-  /// Every `stride`-th surfel.
-  void assign(const SurfelCloud& scan, double point_sigma_m, std::size_t stride = 1) {
-    count = (scan.size() + stride - 1) / stride;
+  void assign(const SurfelCloud& scan, double point_sigma_m) {
+    count = scan.size();
     sparse = !scan.around.empty();
     if (!scan.normals.empty() && scan.normals.size() != scan.size()) throw Error("a scan has " + std::to_string(scan.size()) + " surfels and " + std::to_string(scan.normals.size()) + " normals");
-    normals.clear();
-    for (std::size_t i = 0; i < scan.normals.size(); i += stride) normals.push_back(scan.normals[i]);
+    normals = scan.normals;
     const std::size_t padded = (count + lanes - 1) / lanes * lanes;
     for (auto& column : columns) column.assign(padded, 0.0f);
     std::fill(columns[9].begin(), columns[9].end(), 1.0f);  // keeps the padding finite
     const Eigen::Vector3f origin = scan.origin.cast<float>();
     const auto variance = float(point_sigma_m * point_sigma_m);
     for (std::size_t i = 0; i < count; ++i) {
-      const Surfel& s = scan.surfels[i * stride];
+      const Surfel& s = scan.surfels[i];
       for (std::size_t a = 0; a < 3; ++a) columns[a][i] = origin[Eigen::Index(a)] + s.mean[Eigen::Index(a)];
       for (std::size_t a = 0; a < 6; ++a) columns[3 + a][i] = s.covariance[Eigen::Index(a)];
       columns[9][i] = variance * (1.0f + 4.0f / s.count);  // the spread of a few points is not known from them
@@ -395,9 +393,8 @@ struct JointRegistration::Workspace {
   std::vector<TargetState> targets;
   Eigen::Matrix3d R_map_scan = Eigen::Matrix3d::Identity();  // at which the targets were linearised last
 
-  void prepare(const SurfelCloud& scan, std::span<const JointTarget> wanted, const Eigen::Isometry3d& guess, const JointOptions& options,
-               std::size_t stride) {
-    source.assign(scan, options.point_sigma_m, stride);
+  void prepare(const SurfelCloud& scan, std::span<const JointTarget> wanted, const Eigen::Isometry3d& guess, const JointOptions& options) {
+    source.assign(scan, options.point_sigma_m);
     targets.resize(wanted.size());
     for (std::size_t t = 0; t < wanted.size(); ++t) targets[t].begin(wanted[t], source, guess);
   }
@@ -415,7 +412,7 @@ JointRegistration& JointRegistration::operator=(JointRegistration&&) noexcept = 
 JointResult JointRegistration::align(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess,
                                      const std::optional<PosePrior>& prior) {
   Workspace& w = *workspace_;
-  w.prepare(scan, targets, guess, options_, 1);
+  w.prepare(scan, targets, guess, options_);
   constexpr int settled_after = 15;   // iterations
   JointResult result;
   result.T_map_scan = guess;
@@ -473,14 +470,6 @@ std::vector<JointTarget> blurred(std::span<const JointTarget> targets, double si
   return wider;
 }
 
-SurfelCloud every(const SurfelCloud& scan, std::size_t stride) {
-  if (stride <= 1) return scan;
-  SurfelCloud some{scan.origin, {}, {}};
-  for (std::size_t i = 0; i < scan.size(); i += stride) some.surfels.push_back(scan.surfels[i]);
-  for (std::size_t i = 0; i < scan.normals.size(); i += stride) some.normals.push_back(scan.normals[i]);
-  return some;
-}
-
 bool same_place(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   constexpr double near_m = 0.3, near_rad = 0.01;
   const Vector6d apart = local_coordinates(a, b);
@@ -490,25 +479,22 @@ bool same_place(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 }  // namespace
 
 double JointRegistration::score(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan, double sigma_m) {
-  workspace_->prepare(scan, blurred(targets, sigma_m), T_map_scan, options_, 1);
+  workspace_->prepare(scan, blurred(targets, sigma_m), T_map_scan, options_);
   return score(T_map_scan);
 }
 
 std::vector<double> JointRegistration::improvements(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan,
                                                     std::span<const Eigen::Isometry3d> elsewhere, double sigma_m) {
   const auto begin = [&](const SurfelCloud& surfels) {
-    workspace_->prepare(surfels, blurred(targets, sigma_m), T_map_scan, options_, 1);
+    workspace_->prepare(surfels, blurred(targets, sigma_m), T_map_scan, options_);
     remember(T_map_scan);
   };
   begin(scan);
-  SurfelCloud of_walls{scan.origin, {}, {}};   // the others, most of a scan, say nothing
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (std::ranges::none_of(workspace_->targets, [&](const TargetState& target) { return target.remembers_wall(i); })) continue;
-    of_walls.surfels.push_back(scan.surfels[i]);
-    if (!scan.normals.empty()) of_walls.normals.push_back(scan.normals[i]);
-  }
+  std::vector<std::size_t> of_walls;   // the others, most of a scan, say nothing
+  for (std::size_t i = 0; i < scan.size(); ++i)
+    if (std::ranges::any_of(workspace_->targets, [&](const TargetState& target) { return target.remembers_wall(i); })) of_walls.push_back(i);
   constexpr std::size_t most_surfels = 500;
-  const SurfelCloud some = every(of_walls, (of_walls.size() + most_surfels - 1) / most_surfels);
+  const SurfelCloud some = every(selected(scan, of_walls), std::max<std::size_t>(1, (of_walls.size() + most_surfels - 1) / most_surfels));
   begin(some);
   const double of_each = some.empty() ? 0 : static_cast<double>(of_walls.size()) / static_cast<double>(some.size());
   std::vector<double> improvements;
@@ -527,12 +513,12 @@ std::vector<ScoredResult> JointRegistration::search(const SurfelCloud& scan, std
     Eigen::Isometry3d T;
   };
   std::vector<Start> starts;
-  const auto prepare = [&](std::span<const JointTarget> wanted, const Eigen::Isometry3d& T, std::size_t stride) {
-    workspace_->prepare(scan, wanted, T, options_, stride);
+  const auto prepare = [&](const SurfelCloud& surfels, std::span<const JointTarget> wanted, const Eigen::Isometry3d& T) {
+    workspace_->prepare(surfels, wanted, T, options_);
     if (search.against) remember(*search.against);
   };
   const auto rank = [&](const Eigen::Isometry3d& T) { return search.against ? gain(T) : score(T); };
-  prepare(blurred(targets, search.sigma_m), guess, std::max<std::size_t>(1, scan.size() / std::size_t(search.surfels)));
+  prepare(every(scan, std::max<std::size_t>(1, scan.size() / std::size_t(search.surfels))), blurred(targets, search.sigma_m), guess);
   const int steps = int(search.radius_m / search.step_m), turns = int(search.yaw_rad / search.step_rad);
   for (int turn = -turns; turn <= turns; ++turn)
     for (int i = -steps; i <= steps; ++i)
@@ -550,7 +536,7 @@ std::vector<ScoredResult> JointRegistration::search(const SurfelCloud& scan, std
     const JointResult match = align(scan, targets, start.T);
     const bool known = std::any_of(found.begin(), found.end(), [&](const ScoredResult& other) { return same_place(other.match.T_map_scan, match.T_map_scan); });
     if (known) continue;
-    prepare(targets, match.T_map_scan, 1);
+    prepare(scan, targets, match.T_map_scan);
     found.push_back({match, rank(match.T_map_scan)});
   }
   std::stable_sort(found.begin(), found.end(), [](const ScoredResult& a, const ScoredResult& b) { return a.score > b.score; });

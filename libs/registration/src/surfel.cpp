@@ -14,4 +14,25 @@ void merge(Surfel& into, const Surfel& from) {
   into.count = total;
 }
 
+SurfelCloud selected(const SurfelCloud& scan, std::span<const std::size_t> which) {
+  SurfelCloud some;
+  some.origin = scan.origin;
+  const auto select = [&](const auto& column, auto& of_some) {
+    if (column.empty()) return;   // not told
+    of_some.reserve(which.size());
+    for (const std::size_t i : which) of_some.push_back(column[i]);
+  };
+  select(scan.surfels, some.surfels);
+  select(scan.around, some.around);
+  select(scan.normals, some.normals);
+  return some;
+}
+
+SurfelCloud every(const SurfelCloud& scan, std::size_t stride) {
+  if (stride == 1) return scan;
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < scan.size(); i += stride) which.push_back(i);
+  return selected(scan, which);
+}
+
 }  // namespace priormap

@@ -152,6 +152,24 @@ TEST(ScanReducer, SurfelsOfManyLasersTellThemselves) {
   EXPECT_TRUE(reduced(street::canyon_with_piers(), {.columns = 2000}).around.empty());
 }
 
+TEST(SurfelCloud, OfWhatIsThinnedAllIsToldThatWas) {
+  SurfelCloud scan = reduced(street::wide_street(), street::vlp16);
+  scan.origin = {1, 2, 3};
+  scan.normals.resize(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) scan.normals[i].x() = float(i);
+  ASSERT_EQ(scan.around.size(), scan.size());
+  const SurfelCloud some = every(scan, 3);
+  EXPECT_EQ(some.origin, scan.origin);
+  ASSERT_EQ(some.size(), (scan.size() + 2) / 3);
+  ASSERT_EQ(some.around.size(), some.size());
+  ASSERT_EQ(some.normals.size(), some.size());
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    EXPECT_EQ(some.surfels[i].mean, scan.surfels[3 * i].mean);
+    EXPECT_EQ(some.around[i].normal, scan.around[3 * i].normal);
+    EXPECT_EQ(some.normals[i], scan.normals[3 * i]);
+  }
+}
+
 /// By its own points where they spread, by those around it where it is a trace; those of the others are not told.
 TEST(Normals, AreThoseOfAllSurfelsThatTell) {
   SurfelCloud scan = reduced(street::wide_street(), street::vlp16);

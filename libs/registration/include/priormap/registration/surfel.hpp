@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 namespace priormap {
@@ -40,6 +42,11 @@ struct SurfelCloud {
   std::size_t size() const { return surfels.size(); }
   bool empty() const { return surfels.empty(); }
 };
+
+/// The surfels `which`, in this order, with all that is told of them. @param which  below scan.size()
+SurfelCloud selected(const SurfelCloud& scan, std::span<const std::size_t> which);
+/// Every `stride`-th surfel from the first one on, with all that is told of them. @param stride  1 at least
+SurfelCloud every(const SurfelCloud& scan, std::size_t stride);
 
 /// Normals of all surfels of a scan reduced to voxels: by their own points, else by those around them, which are not kept.
 void tell_normals(SurfelCloud& scan, double voxel_m);
