@@ -139,7 +139,7 @@ std::optional<OdometryStep> Odometry::found_around(const SurfelCloud& scan, cons
   constexpr double radius_m = 20, behind_m = 4, clear_gain = 0.05;   // a surfel
   constexpr std::size_t surfels = 150;
   SurfelCloud some = every(scan, std::max<std::size_t>(scan.size() / surfels, 1));
-  some.around.clear();   // registered as if of many lasers; the wider kernel was not tried here
+  some.few_lasers = false;   // the wider kernel was not tried here
   const PoseSearchOptions starts{.radius_m = radius_m, .yaw_rad = 1.2, .step_m = 3, .step_rad = 0.1, .surfels = surfels, .refined = std::numeric_limits<int>::max()};
   Eigen::Isometry3d centre = T_odom_last_;
   if (const double speed_m_s = velocity_.tail<3>().norm(); speed_m_s > 0) centre.translation() += (radius_m - behind_m) / speed_m_s * (centre.linear() * velocity_.tail<3>());

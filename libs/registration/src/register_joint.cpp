@@ -21,12 +21,12 @@ constexpr std::size_t lanes = 16;
 struct SourceColumns {
   std::array<std::vector<float>, 10> columns;  // x y z, covariance, variance
   std::size_t count = 0;
-  bool sparse = false;   // of few lasers
+  bool few_lasers = false;   // as in SurfelCloud
   std::vector<Eigen::Vector3f> normals;   // in sensor axes, as in SurfelCloud
 
   void assign(const SurfelCloud& scan, double point_sigma_m) {
     count = scan.size();
-    sparse = !scan.around.empty();
+    few_lasers = scan.few_lasers;
     if (!scan.normals.empty() && scan.normals.size() != scan.size()) throw Error("a scan has " + std::to_string(scan.size()) + " surfels and " + std::to_string(scan.normals.size()) + " normals");
     normals = scan.normals;
     const std::size_t padded = (count + lanes - 1) / lanes * lanes;
@@ -139,7 +139,7 @@ class TargetState {
     Linearization out = from_sums(sums, T.linear());
     out.doubt = std::pow(std::max(1.0, weakest_scale) / std::max(1.0, scale), 2);
     out.doubted = T.linear().transpose() * weakest_.cast<double>();
-    if (columns.sparse && !settled) weakest_ = (T.linear() * weakest_direction(out.H)).cast<float>();
+    if (columns.few_lasers && options.hears_weakest_direction && !settled) weakest_ = (T.linear() * weakest_direction(out.H)).cast<float>();
     const double weight = target_.weight / std::pow(std::max(1.0, scale), 2);
     out.H *= weight;
     out.g *= weight;

@@ -128,7 +128,8 @@ void ScanReducer::add(const float* xyz, const float* time_s, std::size_t count) 
 void ScanReducer::tell_from_around(SurfelCloud& scan) const {
   constexpr std::size_t enough_wide = 600;
   const auto wide = [&](const Surfel& surfel) { return is_wide(surfel, voxel_m_); };
-  if (std::size_t(std::ranges::count_if(scan.surfels, wide)) >= enough_wide) return;
+  scan.few_lasers = std::size_t(std::ranges::count_if(scan.surfels, wide)) < enough_wide;
+  if (!scan.few_lasers) return;
   scan.around.resize(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const Surfel& surfel = scan.surfels[i];

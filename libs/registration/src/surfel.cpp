@@ -17,6 +17,7 @@ void merge(Surfel& into, const Surfel& from) {
 SurfelCloud selected(const SurfelCloud& scan, std::span<const std::size_t> which) {
   SurfelCloud some;
   some.origin = scan.origin;
+  some.few_lasers = scan.few_lasers;
   const auto select = [&](const auto& column, auto& of_some) {
     if (column.empty()) return;   // not told
     of_some.reserve(which.size());

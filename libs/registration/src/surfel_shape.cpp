@@ -64,7 +64,7 @@ void tell_normals(SurfelCloud& scan, double voxel_m) {
     const SurfelShape own = shape_of_moments(scan.surfels[i], float(voxel_m));
     scan.normals[i] = plane_normal(own.tells_nothing() && !scan.around.empty() ? scan.around[i] : own);
   }
-  std::vector<SurfelShape>().swap(scan.around);   // with its memory
+  std::vector<SurfelShape>().swap(scan.around);
 }
 
 }  // namespace priormap

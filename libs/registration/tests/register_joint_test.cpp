@@ -149,7 +149,7 @@ TEST(JointRegistrationInARoom, EndsWhereNoDirectionIsTheWeakest) {
           p[axis] = side, p[(axis + 1) % 3] = float(a) + 0.5f, p[(axis + 2) % 3] = float(b) + 0.5f;
           add(p, Eigen::Vector3f::Unit(axis));
         }
-  scan.around.resize(scan.size());   // as of few lasers
+  scan.few_lasers = true;
   SurfelMap map;
   map.insert(planes);
   const JointTarget target{&map};
@@ -212,7 +212,7 @@ struct StreetOfSurfels {
       const double off_m = i < share_moved * num_crosswise ? 0.4 : scatter_m * (2 * (i * 7 % num_crosswise + 0.5) / num_crosswise - 1);
       add(p, Eigen::Vector3d::UnitX(), T_map_scan.inverse() * p + off_m * Eigen::Vector3d::UnitX());
     }
-    scan.around.resize(scan.size());   // as of few lasers
+    scan.few_lasers = true;
   }
   /// How far along the street a registration errs that begins where all but the crosswise surfels fit exactly.
   double error_m() const {

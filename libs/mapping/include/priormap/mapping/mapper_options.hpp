@@ -58,7 +58,7 @@ struct OdometryOptions {
 
 /// Where the odometry lies in the prior, online.
 struct TrackingOptions {
-  JointOptions registration{.kernel_width = 2, .start_scale = 1};
+  JointOptions registration{.kernel_width = 2, .start_scale = 1, .hears_weakest_direction = false};
   SurfelMapOptions prior;
   PoseSearchOptions search;
   int start_keyframes = 12;

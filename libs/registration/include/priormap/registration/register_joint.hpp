@@ -28,6 +28,9 @@ struct JointOptions {
   int max_iterations = 30;
   double translation_epsilon_m = 5e-4;
   double rotation_epsilon_rad = 2e-5;
+  /// Of scans of few lasers: the kernel is wider for what tells of the direction of which they tell least, so that the few that do are no outliers among the many that do not (docs/adr/0022).
+  /// Right against the scans before; a prior's own errors along that direction would be heard as well.
+  bool hears_weakest_direction = true;
 
   template <class Visitor>
   void describe(Visitor& visit) {
@@ -98,7 +101,7 @@ struct ScoredResult {
 /// Registers scans against several maps at once: the normal equations of all targets add up to one 6x6 system (and a prior on the pose, if given), solved by Gauss-Newton.
 /// A residual is the distance of a scan surfel's mean from the plane (line, point) of the nearest map surfel, whitened by the sum of that surfel's variance, the point
 /// noise, and the scan surfel's own covariance along the normal (plane to plane: Segal et al., Generalized-ICP, RSS 2009, where both normals agree; a scan surfel that does
-/// not lie in the plane weighs little). Geman-McClure kernel; its width follows, target by target and iteration by iteration, the median of the residuals; for few lasers it is wider for what tells of the direction that they tell least of.
+/// not lie in the plane weighs little). Geman-McClure kernel; its width follows, target by target and iteration by iteration, the median of the residuals; for few lasers it is wider for what tells of the direction that they tell least of (`hears_weakest_direction`).
 /// Scans with normals: ground is not compared with walls.
 /// A correspondence is searched anew only when the mean has moved by half the gap between the nearest and the second-nearest surfel.
 /// One thread; keeps its buffers from scan to scan. Same bytes for the same input.

@@ -34,8 +34,11 @@ Eigen::Vector3f normal_of(const Surfel& surfel, double voxel_m);
 struct SurfelCloud {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Surfel> surfels;
-  /// Of the surface that each lies on, by the points around it, where its own do not tell: a sensor of few lasers draws single traces, but several within some metres. As many; empty where enough surfels tell for themselves.
-  std::vector<SurfelShape> around;
+  /// Few surfels show by themselves what surface they lie on, as where a sensor of few lasers draws single traces. Says how the scan is to be registered, whatever is told of its surfels below.
+  bool few_lasers = false;
+  /// Of the surface that each lies on, by the points around it, where its own do not tell: of single traces there are several within some metres. As many, or empty: not told, for
+  /// enough surfels tell for themselves, or because it went into the normals.
+  std::vector<SurfelShape> around = {};
   /// Unit, of the surface that each lies on; zero where that is not known. As many, or empty: not asked for. With them ground is not compared with walls.
   std::vector<Eigen::Vector3f> normals = {};
 
@@ -48,7 +51,7 @@ SurfelCloud selected(const SurfelCloud& scan, std::span<const std::size_t> which
 /// Every `stride`-th surfel from the first one on, with all that is told of them. @param stride  1 at least
 SurfelCloud every(const SurfelCloud& scan, std::size_t stride);
 
-/// Normals of all surfels of a scan reduced to voxels: by their own points, else by those around them, which are not kept.
+/// Normals of all surfels of a scan reduced to voxels of that edge: by their own points, else by those around them. `around`, which nothing asks for then, is given up with its memory.
 void tell_normals(SurfelCloud& scan, double voxel_m);
 
 }  // namespace priormap
