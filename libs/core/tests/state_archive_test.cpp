@@ -47,6 +47,35 @@ TEST(StateArchive, GivesBackWhatItTook) {
   EXPECT_FALSE(owner.rows[1].maybe);
 }
 
+std::string bytes_of(std::optional<double>& value) {
+  StateArchive archive;
+  archive(value);
+  return archive.take();
+}
+
+/// What was in it before an optional became empty does not show.
+TEST(StateArchive, NothingIsTheSameBytesWhateverWasThereBefore) {
+  const auto bytes_after = [](double before) {
+    std::optional<double> value = before;
+    EXPECT_GT(bytes_of(value).size(), sizeof(double));
+    value.reset();
+    return bytes_of(value);
+  };
+  EXPECT_EQ(bytes_after(1), bytes_after(2));
+}
+
+TEST(StateArchive, GivesBackAnOptionalAndThatThereIsNone) {
+  std::optional<std::string> text = "text", none;
+  StateArchive out;
+  out(text, none);
+  std::optional<std::string> text_again, none_again = "another";
+  StateArchive in(out.take());
+  in(text_again, none_again);
+  in.expect_end();
+  EXPECT_EQ(text_again, text);
+  EXPECT_FALSE(none_again);
+}
+
 TEST(StateArchive, RefusesWhatIsCutShortOrTooLong) {
   const std::string whole = bytes_of(example(), 7);
   for (std::size_t size = 0; size < whole.size(); size += 5) {

@@ -24,7 +24,6 @@ Eigen::Isometry3d motion_at_start(const ScanSource& source, std::size_t first, s
   around_rest.step_m = 0.5;
   around_rest.yaw_rad = 0.1;
   const Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();
-  around_rest.against = rest;
   if (last - first < 2) return rest;
 
   ScanReducer reducer(surfel_m);
@@ -34,7 +33,7 @@ Eigen::Isometry3d motion_at_start(const ScanSource& source, std::size_t first, s
   map.insert(reducer.reduce(source.read(first).points), rest);
   const SurfelCloud second = reducer.reduce(source.read(first + 1).points);
   constexpr double least_gain = 0.2;   // surfels: motions of 0.3 m gain 2.6 and more, noise 0.01
-  const ScoredResult best = registration.search(second, targets, rest, around_rest).front();
+  const ScoredResult best = registration.search(second, targets, rest, around_rest, rest).front();
   const Eigen::Isometry3d T_first_second = best.score > least_gain ? best.match.T_map_scan : rest;
   if (last - first < 3) return T_first_second;
   map.insert(second, T_first_second);

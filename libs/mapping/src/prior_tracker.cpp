@@ -52,8 +52,7 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
     // Of a street that says little along it a loose start may slide by metres; what is near it is another place to be compared.
     const Eigen::Isometry3d T_near = registration_.align(scan, targets, T_start, PosePrior{T_start, near_weight * start_information(T_start)}).T_map_scan;
     hypotheses_.push_back({T_near * T_odom_sensor.inverse(), 0});
-    if (located_) search_.against = T_given;
-    for (const ScoredResult& other : registration_.search(scan, targets, T_given, search_))
+    for (const ScoredResult& other : registration_.search(scan, targets, T_given, search_, located_ ? std::optional(T_given) : std::nullopt))
       hypotheses_.push_back({other.match.T_map_scan * T_odom_sensor.inverse(), 0});
   }
   const Matrix6d information = (Vector6d() << Eigen::Vector3d::Constant(1e4), Eigen::Vector3d::Constant(10)).finished().asDiagonal();

@@ -507,7 +507,7 @@ std::vector<double> JointRegistration::improvements(const SurfelCloud& scan, std
 }
 
 std::vector<ScoredResult> JointRegistration::search(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess,
-                                                    const PoseSearchOptions& search) {
+                                                    const PoseSearchOptions& search, const std::optional<Eigen::Isometry3d>& against) {
   struct Start {
     double score;
     Eigen::Isometry3d T;
@@ -515,9 +515,9 @@ std::vector<ScoredResult> JointRegistration::search(const SurfelCloud& scan, std
   std::vector<Start> starts;
   const auto prepare = [&](const SurfelCloud& surfels, std::span<const JointTarget> wanted, const Eigen::Isometry3d& T) {
     workspace_->prepare(surfels, wanted, T, options_);
-    if (search.against) remember(*search.against);
+    if (against) remember(*against);
   };
-  const auto rank = [&](const Eigen::Isometry3d& T) { return search.against ? gain(T) : score(T); };
+  const auto rank = [&](const Eigen::Isometry3d& T) { return against ? gain(T) : score(T); };
   prepare(every(scan, std::max<std::size_t>(1, scan.size() / std::size_t(search.surfels))), blurred(targets, search.sigma_m), guess);
   const int steps = int(search.radius_m / search.step_m), turns = int(search.yaw_rad / search.step_rad);
   for (int turn = -turns; turn <= turns; ++turn)

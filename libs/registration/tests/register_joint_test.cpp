@@ -166,8 +166,8 @@ class JointRegistrationOfFewLasers : public testing::Test {
     SurfelMap map;
     map.insert(scan_at(x, 1), rest);
     const JointTarget target{&map};
-    const PoseSearchOptions around_rest{.radius_m = 4, .yaw_rad = 0.1, .step_m = 0.5, .against = against};
-    return JointRegistration().search(scan_at(x + way_m, 2), {&target, 1}, rest, around_rest).front().match.T_map_scan;
+    const PoseSearchOptions around_rest{.radius_m = 4, .yaw_rad = 0.1, .step_m = 0.5};
+    return JointRegistration().search(scan_at(x + way_m, 2), {&target, 1}, rest, around_rest, against).front().match.T_map_scan;
   }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -11,7 +12,7 @@ namespace priormap {
 /// Puts the state of objects into bytes and takes it out of them again. A type says once, for both ways, what its state is:
 ///   void exchange(StateArchive& archive) { archive(local_map_, T_odom_last_, num_lost_); }
 /// Types without `exchange` that own nothing (numbers, Eigen's fixed sizes, aggregates of such) go as they lie in memory: bytes of this program on this machine,
-/// for going on after an interruption, not for keeping.
+/// for going on after an interruption, not for keeping. The same state gives the same bytes but for the padding of aggregates, and for what lies in an empty optional within one.
 class StateArchive {
  public:
   /// Collects.
@@ -47,6 +48,15 @@ class StateArchive {
       for (Value& value : values) value.exchange(*this);
     else
       plain(values.data(), values.size());
+  }
+  template <class Value>
+  void exchange(std::optional<Value>& value) {
+    auto is_there = static_cast<std::uint8_t>(value.has_value());   // what lies in memory where there is none is not determined
+    plain(&is_there, 1);
+    if (is_there > 1) refuse();
+    if (reading_ && is_there) value.emplace();
+    if (reading_ && !is_there) value.reset();
+    if (value) exchange(*value);
   }
   void exchange(std::string& text) {
     resize(text);

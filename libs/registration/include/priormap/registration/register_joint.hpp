@@ -54,9 +54,6 @@ struct PoseSearchOptions {
   double sigma_m = 0.3;      ///< of the residuals while starts are compared
   int surfels = 400;         ///< of the scan, for comparing starts
   int refined = 8;           ///< best starts that are registered
-  /// Poses are ranked by what speaks for them rather than for this one, of the scan in the map: how surfels fit counts by how much the two poses move them along the normals of the planes that they lie near. Most
-  /// of a street, and all rings of a lidar on level ground, fit anywhere along it.
-  std::optional<Eigen::Isometry3d> against = std::nullopt;
 };
 
 /// What is known of the pose beforehand; `information` with the tangent of `retract` at T.
@@ -118,7 +115,10 @@ class JointRegistration {
 
   /// Registrations from a grid of starts, best first (correlative scan matching: Olson, ICRA 2009): starts are ranked by how many surfels find a map surfel that fits, the
   /// best are registered with `align`, those that end in the same place count once. For the first pose and for finding back; thousands of starts take tenths of a second.
-  std::vector<ScoredResult> search(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess, const PoseSearchOptions& options = {});
+  /// @param against  poses are ranked by what speaks for them rather than for this one, of the scan in the map: how surfels fit counts by how much the two poses move them along the normals of
+  ///                 the planes that they lie near. Most of a street, and all rings of a lidar on level ground, fit anywhere along it
+  std::vector<ScoredResult> search(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess, const PoseSearchOptions& options = {},
+                                   const std::optional<Eigen::Isometry3d>& against = std::nullopt);
 
   /// How well a scan fits at a pose: 0.15 for each surfel that does, down to -0.85 for one whose nearest plane is far off; none for one that the maps do not know.
   double score(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan, double sigma_m);
