@@ -2,7 +2,10 @@
 
 #include <Eigen/LU>
 
+#include <random>
+
 #include "drive_estimate.hpp"
+#include "town.hpp"
 
 namespace priormap {
 namespace {
@@ -82,6 +85,61 @@ TEST(DriveEstimate, WithoutAPriorNoHeightIsDoubted) {
 TEST(DriveEstimate, WithoutAPriorTheOdometryStays) {
   const auto poses = estimate_drive(drive_with_a_gap(), std::nullopt, {}, {});
   for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_NEAR(poses[i].T_map_sensor.translation().x(), static_cast<double>(i), 1e-6) << i;
+}
+
+/// House fronts and ground, which tell nothing along the road, and crowns that stand before them: in each cubic metre of these one facet across the road, anywhere in it. So there lies one near
+/// wherever the drive is thought to be.
+PointCloud avenue() {
+  constexpr int first_x = -20, last_x = 45;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> part(0.15, 0.85);
+  PointCloud points;
+  const auto add = [&](const Eigen::Vector3d& corner, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+    constexpr int along = 6;
+    for (int i = 0; i < along; ++i)
+      for (int j = 0; j < along; ++j) {
+        points.xyz.push_back((corner + (i + 0.5) / along * u + (j + 0.5) / along * v).cast<float>());
+        points.normal.push_back(u.cross(v).normalized().cast<float>());
+      }
+  };
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+  for (int along = first_x; along < last_x; ++along) {
+    for (int across = -8; across < 8; ++across) add({1.0 * along, 1.0 * across, 0.5}, x, y);
+    for (int up = 1; up < 5; ++up) add({1.0 * along, 8.5, 1.0 * up}, x, z), add({1.0 * along, -8.5, 1.0 * up}, z, x);
+    for (int across = 3; across < 6; ++across)
+      for (const int side : {across, -across - 1})
+        for (int up = 1; up < 4; ++up) add({along + part(random), side + 0.1, up + 0.1}, 0.8 * y, 0.8 * z);
+  }
+  return points;
+}
+
+/// A scan that is compared with what lies nearest stays where it is; all together they fit where they were taken (docs/adr/0023).
+TEST(DriveEstimate, AlongAnAvenueAStretchIsMovedToWhereAllOfItFits) {
+  constexpr double step_m = 2, off_m = 0.75, range_m = 15;
+  const PointCloud world = avenue();
+  const auto truth = [](std::size_t i) { return test::pose(step_m * static_cast<double>(i), 0, 2, 0); };
+  const ReadScan read = [&](std::size_t index) {
+    Scan scan;
+    for (const Eigen::Vector3f& p : world.xyz) {
+      const Eigen::Vector3d p_sensor = p.cast<double>() - truth(index).translation();
+      if (p_sensor.norm() < range_m) scan.points.xyz.push_back(p_sensor.cast<float>());
+    }
+    return scan;
+  };
+  std::vector<ScanRecord> records;
+  for (std::size_t i = 0; i < 13; ++i) {
+    OdometryStep step;
+    step.T_odom_sensor = truth(i);
+    step.joined = i > 0;
+    step.information = 1e4 * Matrix6d::Identity();
+    step.figures.converged = true;
+    records.push_back({i, 0.1 * static_cast<double>(i), step, Eigen::Translation3d(off_m, 0, 0) * truth(i)});
+  }
+  JointMethodOptions options;
+  options.estimate.keyframe_m = step_m;
+  const test::TiledPoints tiles(world, 50);
+  const auto poses = estimate_drive(records, NearTiles(tiles, MapFrame::local(), 150), read, options);
+  for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_NEAR(poses[i].T_map_sensor.translation().x(), truth(i).translation().x(), 0.05) << i;
 }
 
 }  // namespace

@@ -130,6 +130,24 @@ TEST(Odometry, SweepsAreStraightInATurnAndAtAStop) {
   }
 }
 
+/// More than a second without a scan, at a slow walk: the first one beyond fits, and tells how far it went in that time.
+TEST(Odometry, BeyondAPauseTheVelocityIsTheWayByTheTimeThatItTook) {
+  constexpr int before = 10;
+  constexpr double speed_m_s = 0.5, pause_s = 1.5;
+  const street::World world = street::town(60, 3);
+  ScanReducer reducer(1.0);
+  Odometry odometry({}, (Vector6d() << Eigen::Vector3d::Zero(), speed_m_s, 0, 0).finished());
+  for (int k = 0; k <= before; ++k) {
+    const double stamp_s = 0.1 * k + (k < before ? 0 : pause_s);
+    SurfelCloud scan = reducer.reduce(street::scan(world, street::pose(speed_m_s * stamp_s, 0, 1.7, 0), {}, static_cast<unsigned>(k)));
+    const OdometryStep step = odometry.step(scan, stamp_s);
+    EXPECT_EQ(step.joined, k > 0) << k;
+    if (k == before) {
+      EXPECT_NEAR(step.velocity[3], speed_m_s, 0.05);
+    }
+  }
+}
+
 /// Scans are missing in the recording, and the stamps do not tell.
 TEST(Odometry, GoesOnBeyondAGapAlsoRoundACorner) {
   constexpr int before = 10;

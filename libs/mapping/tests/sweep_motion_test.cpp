@@ -52,6 +52,29 @@ TEST(SweepMotion, ASurfelMovesByTheMeanTimeOfItsPoints) {
   EXPECT_LT((surfels.surfels.front().mean.cast<double>() - p_sensor).norm(), 1e-3);
 }
 
+/// One surfel, of which those around it tell that it lies on a wall ahead.
+SurfelCloud trace_on_a_wall(float time_s) {
+  SurfelCloud scan;
+  scan.surfels = {{.mean = {20, 0, 0}, .count = 20, .time_s = time_s}};
+  scan.around = {{.normal = Eigen::Vector3f::UnitX(), .directed = 1}};
+  return scan;
+}
+
+TEST(SweepMotion, WhatThoseAroundASurfelTellTurnsWithIt) {
+  constexpr float time_s = 0.05f;
+  SurfelCloud scan = trace_on_a_wall(time_s);
+  undo_motion(scan, turning);
+  const Eigen::Matrix3d turned = exp_so3(static_cast<double>(time_s) * turning.head<3>()).toRotationMatrix();
+  EXPECT_LT((scan.around.front().normal.cast<double>() - turned.col(0)).norm(), 1e-4);
+}
+
+TEST(SweepMotion, WhatThoseAroundASurfelTellMovesToAnotherFrameWithIt) {
+  SurfelCloud scan = trace_on_a_wall(0);
+  move(scan, somewhere());
+  EXPECT_LT((scan.surfels.front().mean.cast<double>() - somewhere() * Eigen::Vector3d(20, 0, 0)).norm(), 1e-4);
+  EXPECT_LT((scan.around.front().normal.cast<double>() - somewhere().linear().col(0)).norm(), 1e-6);
+}
+
 TEST(SweepMotion, WithoutTimesNothingMoves) {
   PointCloud scan;
   scan.xyz = {{10, 2, 1}};

@@ -61,6 +61,16 @@ class TiledPoints : public PriorPoints {
       tile.xyz.push_back((p - tile.origin).cast<float>());
     }
   }
+  /// With their normals.
+  TiledPoints(const PointCloud& points, double tile_size) : grid_(tile_size) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector3d p = points.position(i);
+      PointCloud& tile = tiles_[grid_.key(p.x(), p.y())];
+      if (tile.empty()) tile.origin = p;
+      tile.xyz.push_back((p - tile.origin).cast<float>());
+      tile.normal.push_back(points.normal[i]);
+    }
+  }
   const std::optional<Crs>& crs() const override { return none_; }
   const TileGrid& grid() const override { return grid_; }
   std::vector<TileKey> tiles_within(const Bounds2& b) const override {

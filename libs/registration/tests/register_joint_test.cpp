@@ -214,19 +214,31 @@ struct StreetOfSurfels {
     }
     scan.few_lasers = true;
   }
-  /// How far along the street a registration errs that begins where all but the crosswise surfels fit exactly.
-  double error_m() const {
+  /// By a registration that begins where all but the crosswise surfels fit exactly.
+  JointResult registered() const {
     SurfelMap map;
     map.insert(planes);
     const JointTarget target{&map};
     const JointResult result = JointRegistration().align(scan, {&target, 1}, Eigen::Isometry3d::Identity());
     EXPECT_TRUE(result.converged);
-    return (result.T_map_scan.translation() - T_map_scan.translation()).x();
+    return result;
   }
+  /// How far along the street that errs.
+  double error_m() const { return (registered().T_map_scan.translation() - T_map_scan.translation()).x(); }
 };
 
 TEST(JointRegistrationAlongAStreet, TheFewThatTellOfItAreNoOutliersAmongTheManyThatDoNot) {
   for (const double scatter_m : {0.05, 0.1, 0.15}) EXPECT_LT(std::abs(StreetOfSurfels(30, scatter_m).error_m()), 0.01) << scatter_m;
+}
+
+/// The mean of n that scatter evenly by up to s is known to s / sqrt(3 n), however surely the thousands fit that tell of other directions.
+TEST(JointRegistrationAlongAStreet, IsKnownAsSurelyAsThoseScatterThatTellOfIt) {
+  constexpr int num_crosswise = 30;
+  for (const double scatter_m : {0.15, 0.3}) {
+    const Matrix6d information = StreetOfSurfels(num_crosswise, scatter_m).registered().targets[0].information;
+    EXPECT_LT(information(3, 3), 2 * 3 * num_crosswise / (scatter_m * scatter_m)) << scatter_m;
+    EXPECT_GT(information(4, 4), 1e5) << scatter_m;   // across it as before
+  }
 }
 
 /// Walls seen slantwise by few columns of points are no poles: those would travel with the sensor.
