@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -25,6 +24,7 @@
 #include "model_frame.hpp"
 #include "model_sight.hpp"
 #include "point_buffer.hpp"
+#include "report_text.hpp"
 #include "visible_points.hpp"
 #include "wall_index.hpp"
 
@@ -352,23 +352,15 @@ ModelReport build_model_prior(const std::vector<std::filesystem::path>& inputs, 
 }
 
 std::string to_text(const ModelReport& report) {
-  std::ostringstream text;
-  const auto line = [&](const std::string& name, const auto& value) { text << std::left << std::setw(28) << name << value << '\n'; };
-  line("buildings", report.buildings);
-  if (report.bridges > 0) line("bridges", report.bridges);
-  if (report.plants > 0) line("plants", report.plants);
-  line("polygons", report.polygons);
-  line("terrain models", report.terrain_models);
-  line("points", report.manifest.num_points);
-  if (report.sight) line("points out of sight", to_text(*report.sight));
-  line("tiles", report.manifest.num_tiles);
-  line("crs", report.manifest.crs);
-  line("vertical", report.manifest.vertical.value_or("null"));
-  for (const auto& [code, number] : report.diagnostics.counts()) line("diagnostic " + std::to_string(static_cast<int>(code)), number);
-  for (const Diagnostics::Entry& entry : report.diagnostics.entries()) {
-    text << "  " << static_cast<int>(entry.code) << ' ' << entry.feature << ": " << entry.message << '\n';
-  }
-  return text.str();
+  ReportText text;
+  text.line("buildings", report.buildings);
+  if (report.bridges > 0) text.line("bridges", report.bridges);
+  if (report.plants > 0) text.line("plants", report.plants);
+  text.line("polygons", report.polygons);
+  text.line("terrain models", report.terrain_models);
+  text.lines_of(report.manifest, report.sight);
+  text.lines_of(report.diagnostics);
+  return text.text();
 }
 
 }  // namespace priormap

@@ -16,6 +16,7 @@
 #include "raster_faults.hpp"
 #include "outline_crs.hpp"
 #include "outline_stages.hpp"
+#include "report_text.hpp"
 
 namespace priormap {
 namespace {
@@ -164,21 +165,14 @@ OutlineReport build_outline_prior(OutlineInput input, const PriorOptions& prior_
 }
 
 std::string to_text(const OutlineReport& report) {
-  std::ostringstream text;
-  const auto line = [&](const std::string& name, const auto& value) { text << std::left << std::setw(28) << name << value << '\n'; };
-  line("outlines", report.counts.outlines);
-  line("parts", report.counts.parts);
-  line("outlines replaced by parts", report.counts.replaced);
-  for (int rule = 0; rule < num_height_rules; ++rule) line("heights by " + to_string(HeightRule(rule)), report.counts.by_rule[static_cast<std::size_t>(rule)]);
-  line("points", report.manifest.num_points);
-  if (report.sight) line("points out of sight", to_text(*report.sight));
-  line("tiles", report.manifest.num_tiles);
-  line("crs", report.manifest.crs);
-  line("vertical", report.manifest.vertical.value_or("null"));
-  for (const auto& [code, number] : report.diagnostics.counts()) line("diagnostic " + std::to_string(static_cast<int>(code)), number);
-  for (const Diagnostics::Entry& entry : report.diagnostics.entries())
-    text << "  " << static_cast<int>(entry.code) << ' ' << entry.feature << ": " << entry.message << '\n';
-  return text.str();
+  ReportText text;
+  text.line("outlines", report.counts.outlines);
+  text.line("parts", report.counts.parts);
+  text.line("outlines replaced by parts", report.counts.replaced);
+  for (int rule = 0; rule < num_height_rules; ++rule) text.line("heights by " + to_string(HeightRule(rule)), report.counts.by_rule[static_cast<std::size_t>(rule)]);
+  text.lines_of(report.manifest, report.sight);
+  text.lines_of(report.diagnostics);
+  return text.text();
 }
 
 }  // namespace priormap

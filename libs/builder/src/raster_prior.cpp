@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 #include <future>
-#include <iomanip>
 #include <memory>
 #include <mutex>
 #include <numeric>
@@ -25,6 +24,7 @@
 #include <priormap/sources/raster_points.hpp>
 
 #include "raster_faults.hpp"
+#include "report_text.hpp"
 
 namespace priormap {
 namespace {
@@ -395,14 +395,10 @@ RasterReport build_raster_prior(const std::vector<fs::path>& files, const PriorO
 }
 
 std::string to_text(const RasterReport& report) {
-  std::ostringstream text;
-  const auto line = [&](const std::string& name, const auto& value) { text << std::left << std::setw(28) << name << value << '\n'; };
-  line("rasters", report.rasters);
-  line("points", report.manifest.num_points);
-  line("tiles", report.manifest.num_tiles);
-  line("crs", report.manifest.crs);
-  line("vertical", report.manifest.vertical.value_or("null"));
-  return text.str();
+  ReportText text;
+  text.line("rasters", report.rasters);
+  text.lines_of(report.manifest, std::nullopt);
+  return text.text();
 }
 
 }  // namespace priormap

@@ -88,15 +88,6 @@ PointCloud read_all(LasReader reader) {
   return points;
 }
 
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 PointCloud full_cloud(std::size_t n = 1000) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> within(-100, 100);

@@ -24,15 +24,6 @@ namespace fs = std::filesystem;
 
 void write_text(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
 
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 PointCloud full_cloud() {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> within(-100, 100);

@@ -1,9 +1,12 @@
 #pragma once
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include <unistd.h>
+
+#include <priormap/core/error.hpp>
 
 namespace priormap {
 
@@ -12,6 +15,16 @@ inline std::filesystem::path shared_data(const std::string& name) {
   const char* folder = std::getenv("PRIORMAP_SHARED_DATA");
   const std::filesystem::path file = std::filesystem::path(folder ? folder : PRIORMAP_SOURCE_DIR "/../shared/data") / name;
   return std::filesystem::exists(file) ? file : std::filesystem::path();
+}
+
+/// What is said of the Error that a call throws.
+inline std::string message_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
 }
 
 /// A fresh folder that is removed at the end of the test.

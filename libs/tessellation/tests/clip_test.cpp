@@ -3,14 +3,10 @@
 #include <priormap/tessellation/clip.hpp>
 #include <random>
 
+#include "total_area.hpp"
+
 namespace priormap {
 namespace {
-
-double total_area(const std::vector<Polygon2>& polygons) {
-  double sum = 0;
-  for (const Polygon2& polygon : polygons) sum += area(polygon);
-  return sum;
-}
 
 const Polygon2 comb{{{0, 0}, {9, 0}, {9, 6}, {7, 6}, {7, 2}, {5, 2}, {5, 6}, {4, 6}, {4, 2}, {2, 2}, {2, 6}, {0, 6}}, {}};
 const Polygon2 frame{{{0, 0}, {10, 0}, {10, 10}, {0, 10}}, {{{2, 2}, {2, 8}, {8, 8}, {8, 2}}}};

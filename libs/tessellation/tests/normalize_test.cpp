@@ -3,14 +3,10 @@
 #include <priormap/tessellation/normalize.hpp>
 #include <random>
 
+#include "total_area.hpp"
+
 namespace priormap {
 namespace {
-
-double total_area(const std::vector<Polygon2>& polygons) {
-  double sum = 0;
-  for (const Polygon2& polygon : polygons) sum += area(polygon);
-  return sum;
-}
 
 void expect_oriented(const std::vector<Polygon2>& polygons) {
   for (const Polygon2& polygon : polygons) {
