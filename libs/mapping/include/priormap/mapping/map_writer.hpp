@@ -23,7 +23,8 @@ struct MapOptions {
 
 /// Writes the mapped points as a prior-like tile set, from the final poses: reads the scans a second time and keeps one point a voxel. Memory is
 /// bounded: on long drives far voxels are forgotten, and a street driven again after that may hold a second point in a voxel.
-/// @param manifest  gives crs, vertical and sources @return as written
+/// @param scans  of `source`, as Mapper::finish returned them   @param frame  that of their poses   @param manifest  gives crs, vertical and sources   @return as written
+/// @throws IoError, FormatError naming the file
 PriorManifest write_map(const std::filesystem::path& directory, const ScanSource& source, const std::vector<MappedScan>& scans, const MapFrame& frame,
                         PriorManifest manifest, const MapOptions& options, int threads, const Events& events);
 

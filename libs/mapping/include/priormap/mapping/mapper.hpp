@@ -47,7 +47,7 @@ class Mapper {
 
   /// Makes scans ready for this mapper, by a thread of its own if wanted.
   PrepareScan preparation() const;
-  /// Places one scan. @return where it was taken, as far as is known when it comes
+  /// Places one scan; scans come in the order of the recording. @return where it was taken, as far as is known when it comes; valid until the next one
   const MappedScan& step(ReadyScan scan);
   const MappedScan& step(const Scan& scan);
 
@@ -61,7 +61,7 @@ class Mapper {
   /// All that the scans so far have left, for a mapper made with the same options, prior and start.
   void exchange(StateArchive& archive);
 
-  /// All scans with their final poses and covariances. @param read_again  for comparing scans with the prior anew at better poses
+  /// All scans with their final poses and covariances; one at least has been placed. @param read_again  for comparing scans with the prior anew at better poses; what it throws is passed on
   std::vector<MappedScan> finish(const ReadScan& read_again);
 
  private:

@@ -59,7 +59,7 @@ class PriorWindow {
   PriorWindow(NearTiles tiles, Map empty, std::function<void(Tile&)> amend = {})
       : amend_(std::move(amend)), tiles_(std::move(tiles)), map_(std::move(empty)), prefetch_(std::make_unique<TilePrefetch<Tile>>([points = &tiles_.points(), frame = tiles_.frame()](TileKey key) { return tile_in_map(load(*points, key), *points, frame); })) {}
 
-  /// Loads and drops, then returns what is there.
+  /// Loads and drops, then returns what is there. @throws what loading a tile throws
   const Map& around(const Eigen::Vector3d& p_map) {
     const auto arrived = tiles_.move_to(p_map);
     if (!arrived.empty()) map_.remove_beyond(p_map, tiles_.reach_m());

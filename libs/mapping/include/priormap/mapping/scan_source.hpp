@@ -14,10 +14,10 @@ class ScanSource {
  public:
   virtual ~ScanSource() = default;
   virtual std::size_t size() const = 0;
-  /// @throws IoError, FormatError naming the file
+  /// @param index  below size(), here as below   @throws IoError, FormatError naming the file
   virtual Scan read(std::size_t index) const = 0;
-  virtual double stamp_s(std::size_t index) const = 0;
-  virtual std::filesystem::path file(std::size_t index) const = 0;
+  virtual double stamp_s(std::size_t index) const = 0;   ///< as in the scan, from whatever beginning the recording counts
+  virtual std::filesystem::path file(std::size_t index) const = 0;   ///< of its points
   /// All that the scan is made from: `file`, and what lies beside it, as the times of its points.
   virtual std::vector<std::filesystem::path> files(std::size_t index) const { return {file(index)}; }
   /// What the recording is and what was assumed or corrected in reading it, for the run report.

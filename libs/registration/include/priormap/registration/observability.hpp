@@ -4,8 +4,8 @@
 
 namespace priormap {
 
-/// How well an information matrix (tangent of `retract`) fixes a pose, direction by direction: standard deviations of the marginal of the translation and of the rotation,
-/// largest first, and their axes as columns, in the frame of the tangent (sensor axes). Infinite where nothing is known.
+/// How well an information matrix fixes a pose, direction by direction: standard deviations of the marginal of the translation and of the rotation,
+/// largest first, and their axes as unit columns in the same order, in the frame of the tangent (sensor axes). Infinite where nothing is known.
 struct Observability {
   Eigen::Vector3d translation_sigma_m;
   Eigen::Matrix3d translation_axes;
@@ -13,6 +13,7 @@ struct Observability {
   Eigen::Matrix3d rotation_axes;
 };
 
+/// @param information  symmetric, positive semi-definite; tangent [rotation, translation] of `retract`
 Observability observability(const Matrix6d& information);
 
 }  // namespace priormap

@@ -13,12 +13,13 @@ namespace priormap {
 
 /// A map to register against, and how far its word counts.
 struct JointTarget {
-  const SurfelMap* map = nullptr;
+  const SurfelMap* map = nullptr;   ///< not null; as it is until what was registered against it has been asked for (`plane_matches`)
   double sigma_m = 0.02;   ///< added (in squares) to the sigma of each of its surfels
   double weight = 1.0;     ///< on its whole information: below 1 where the errors of neighbouring surfels hang together
   Eigen::Isometry3d T_target_map = Eigen::Isometry3d::Identity();   ///< for a map kept in a frame of its own, such as that of the odometry
 };
 
+/// What each is stands in its description below; all numbers are above 0.
 struct JointOptions {
   double max_distance_m = 2.0;
   double kernel_width = 3.0;
@@ -47,12 +48,12 @@ struct JointOptions {
 
 /// Where to look for a pose that is badly known: a grid of starts around the guess, over x and y of the map and the yaw about its z axis.
 struct PoseSearchOptions {
-  double radius_m = 6.0;
-  double yaw_rad = 0.21;
-  double step_m = 1.0;
+  double radius_m = 6.0;     ///< along x and y, each way; 0: the guess alone
+  double yaw_rad = 0.21;     ///< each way
+  double step_m = 1.0;       ///< above 0, as step_rad
   double step_rad = 0.035;
   double sigma_m = 0.3;      ///< of the residuals while starts are compared
-  int surfels = 400;         ///< of the scan, for comparing starts
+  int surfels = 400;         ///< of the scan, for comparing starts; 1 at least, as refined
   int refined = 8;           ///< best starts that are registered
 };
 
@@ -104,12 +105,15 @@ struct ScoredResult {
 /// One thread; keeps its buffers from scan to scan. Same bytes for the same input.
 class JointRegistration {
  public:
+  /// @throws UsageError for an instruction set that the processor lacks, or unless point_sigma_m, kernel_width and min_scale are above 0
   explicit JointRegistration(const JointOptions& options = {}, InstructionSet set = InstructionSet::best);
   ~JointRegistration();
   JointRegistration(JointRegistration&&) noexcept;
   JointRegistration& operator=(JointRegistration&&) noexcept;
 
+  /// The pose of `scan` in the frame of the targets, from `guess`, which may be off by about max_distance_m and some degrees.
   /// Not converged: too little was found to solve for a pose (the guess comes back), or max_iterations.
+  /// @throws Error for a scan with normals for some of its surfels alone
   JointResult align(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& guess,
                     const std::optional<PosePrior>& prior = std::nullopt);
 
@@ -121,8 +125,10 @@ class JointRegistration {
                                    const std::optional<Eigen::Isometry3d>& against = std::nullopt);
 
   /// How well a scan fits at a pose: 0.15 for each surfel that does, down to -0.85 for one whose nearest plane is far off; none for one that the maps do not know.
+  /// @param sigma_m  added (in squares) to those of the targets: how far off still fits
   double score(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan, double sigma_m);
   /// By how much a scan fits walls better at each of some poses nearby: up to 1 for each surfel that has a match at both (some hundred of them stand for all).
+  /// @param elsewhere  of the scan in the map, within some metres of `T_map_scan`   @param sigma_m  as of `score`   @return one for each of `elsewhere`
   std::vector<double> improvements(const SurfelCloud& scan, std::span<const JointTarget> targets, const Eigen::Isometry3d& T_map_scan, std::span<const Eigen::Isometry3d> elsewhere, double sigma_m);
 
   /// Which planes of target `t` the last `align` compared with, at the pose it returned but for its last step.

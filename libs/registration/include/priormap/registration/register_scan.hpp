@@ -6,6 +6,7 @@
 
 namespace priormap {
 
+/// Of `register_scan`; all above 0.
 struct IcpOptions {
   double max_distance_m = 6.0;
   double kernel_width_m = 1.0;
@@ -27,6 +28,7 @@ struct IcpOptions {
 /// Gauss-Newton (the paper, section III-B). A residual r has weight (k^2 / (k^2 + r^2))^2.
 /// A correspondence is a point with a neighbour within max_distance_m; an inlier one with a residual below kernel_width_m, both at the pose returned.
 /// Not converged: fewer than 3 correspondences (the guess comes back), a system that cannot be solved, or max_iterations.
+/// @param T_target_source  a guess, within some metres and degrees   @param threads  1 at least
 /// The sums run over fixed chunks in order: the same bytes for any number of threads.
 RegistrationResult register_scan(const PointCloud& points, const VoxelHashMap& target, const Eigen::Isometry3d& T_target_source,
                                  const IcpOptions& options, int threads = 1);

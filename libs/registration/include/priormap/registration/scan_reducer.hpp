@@ -13,6 +13,7 @@ class ScanReducer {
  public:
   /// @throws UsageError unless `voxel_m` > 0.
   explicit ScanReducer(double voxel_m);
+  /// @param scan  in the frame of its sensor: what lies on the traces of single lasers is told by the cones that these draw about its z axis
   SurfelCloud reduce(const PointCloud& scan);
 
  private:

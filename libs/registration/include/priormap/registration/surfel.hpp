@@ -6,21 +6,21 @@
 
 namespace priormap {
 
-/// A small patch of surface by the moments of the points on it.
+/// A small patch of surface by the moments of the points on it, in the axes of its cloud.
 struct Surfel {
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();
-  float count = 0;                                       ///< points behind the moments
-  float time_s = 0;                                      ///< mean of the times of the points, from the scan's stamp
-  Eigen::Matrix<float, 6, 1> covariance = Eigen::Matrix<float, 6, 1>::Zero();  ///< of the points: xx, xy, xz, yy, yz, zz [m^2]
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();        ///< [m], relative to the origin of its cloud
+  float count = 0;                                       ///< points behind the moments; above 0
+  float time_s = 0;                                      ///< mean of the times of the points, from the scan's stamp; 0 where they have none
+  Eigen::Matrix<float, 6, 1> covariance = Eigen::Matrix<float, 6, 1>::Zero();  ///< of the points, divided by their count: xx, xy, xz, yy, yz, zz [m^2]
 };
 
 /// What a surfel of the map says about a point of surface near it: with r the vector from `mean` to the point, its squared distance is
 /// (isotropic |r|^2 + directed (normal . r)^2) / sigma^2.   plane: 0, 1.   line along `normal`: 1, -1.   scatter: 1, 0.   no use: 0, 0.
 struct SurfelShape {
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();   ///< unit, of either sign; zero for scatter and no use
   float isotropic = 0;
   float directed = 0;
-  float sigma_m = 0;
+  float sigma_m = 0;   ///< of the points about it
   bool tells_nothing() const { return isotropic == 0 && directed == 0; }
 };
 
@@ -30,7 +30,7 @@ void merge(Surfel& into, const Surfel& from);
 /// Unit normal of the plane that the points of a surfel of a voxel lie in; zero when they make none.
 Eigen::Vector3f normal_of(const Surfel& surfel, double voxel_m);
 
-/// Surfels of one scan, in its frame, relative to a double origin (as PointCloud).
+/// Surfels of one scan, in the frame of its sensor (x forward, y left, z up), relative to a double origin (as PointCloud).
 struct SurfelCloud {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   std::vector<Surfel> surfels;

@@ -31,9 +31,10 @@ struct Neighbor {
 
 /// Points in hashed voxels: the linear iVox (Bai et al., Faster-LIO, RA-L 2022) of the paper. A voxel takes a point only while it is not full and no
 /// point of that voxel is nearer than the least distance, so what it holds depends on the order of insertion and on nothing else.
-/// Positions are kept as float32 relative to the voxel's corner: sub-micrometre anywhere in a frame of 2^31 voxels.
+/// Positions are kept as float32 relative to the voxel's corner: sub-micrometre anywhere in a frame of 2^31 voxels. Const members may be called by several threads at once.
 class VoxelHashMap {
  public:
+  /// @throws UsageError unless voxel_m > 0, max_points >= 1 and min_distance_m >= 0
   explicit VoxelHashMap(const VoxelHashMapOptions& options = {});
 
   /// Inserts points given in the map's frame after `T_map_points`. Points that are not finite are ignored.
