@@ -155,7 +155,7 @@ TEST(ScanReducer, SurfelsOfManyLasersTellThemselves) {
 TEST(SurfelCloud, OfWhatIsThinnedAllIsToldThatWas) {
   SurfelCloud scan = reduced(street::wide_street(), street::vlp16);
   scan.origin = {1, 2, 3};
-  scan.normals.resize(scan.size());
+  scan.normals.assign(scan.size(), Eigen::Vector3f::Zero());
   for (std::size_t i = 0; i < scan.size(); ++i) scan.normals[i].x() = float(i);
   ASSERT_EQ(scan.around.size(), scan.size());
   const SurfelCloud some = every(scan, 3);
