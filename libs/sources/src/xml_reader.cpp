@@ -8,6 +8,7 @@
 #include <priormap/core/error.hpp>
 
 #include "byte_source.hpp"
+#include "xml_encoding.hpp"
 
 namespace priormap {
 namespace {
@@ -23,6 +24,16 @@ std::string fault(XML_Error code) {
     case XML_ERROR_PARTIAL_CHAR: return "the file ends too early (" + words + "); fetch it again";
     default: return words;
   }
+}
+
+int XMLCALL fill_table(void* fault_of_reader, const XML_Char* name, XML_Encoding* encoding) {
+  const std::optional<SingleByteTable> table = single_byte_table(name);
+  if (!table) {
+    *static_cast<std::string*>(fault_of_reader) = encoding_fault(name);
+    return XML_STATUS_ERROR;
+  }
+  std::ranges::copy(*table, encoding->map);
+  return XML_STATUS_OK;
 }
 
 }  // namespace
@@ -45,6 +56,7 @@ void XmlReader::run() {
   XML_SetEntityDeclHandler(parser_, [](void* self, const char*, int, const char*, int, const char*, const char*, const char*, const char*) {
     static_cast<XmlReader*>(self)->stop("entity declarations are refused");
   });
+  XML_SetUnknownEncodingHandler(parser_, fill_table, &cause_);
 
   ByteSource bytes(file_);
   constexpr int chunk = 1 << 18;

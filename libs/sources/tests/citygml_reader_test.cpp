@@ -238,5 +238,36 @@ TEST(CityGml, GzipIsReadAndDamageIsNamedByLine) {
   EXPECT_NE(message(deep).find("nested deeper"), std::string::npos);
 }
 
+TEST(CityGml, EncodingsOfOneByteACharacterAreRead) {
+  const auto id_in = [](const std::string& encoding, const std::string& id) {
+    std::string text = document(building(surface("WallSurface", member(square("", 0))), id));
+    const std::string plain = "<?xml version='1.0'?>";
+    text.replace(0, plain.size(), "<?xml version='1.0' encoding='" + encoding + "'?>");
+    const auto models = read(text);
+    return models.size() == 1 ? models[0].id : "none";
+  };
+  for (const std::string encoding : {"windows-1252", "Windows-1252", "CP1252"}) EXPECT_EQ(id_in(encoding, "Stra\xdf" "e_\x80"), "Stra\u00dfe_\u20ac") << encoding;
+  EXPECT_EQ(id_in("ISO-8859-15", "caf\xe9_\xa4"), "caf\u00e9_\u20ac");
+  EXPECT_EQ(id_in("ISO-8859-1", "caf\xe9"), "caf\u00e9") << "expat's own";
+  EXPECT_EQ(id_in("windows-1250", "\xe8\xe1st"), "\u010d\u00e1st");
+  EXPECT_EQ(id_in("KOI8-R", "\xc4\xcf\xcd"), "\u0434\u043e\u043c");
+}
+
+TEST(CityGml, OtherEncodingsAreNamedWithTheRemedy) {
+  for (const std::string encoding : {"GBK", "Shift_JIS", "UTF-7", "ISO-2022-JP", "EBCDIC-US", "no-such"}) {
+    std::string text = document(building(""));
+    text.replace(0, text.find("?>"), "<?xml version='1.0' encoding='" + encoding + "'");
+    try {
+      read(text);
+      ADD_FAILURE() << encoding << " was read";
+    } catch (const FormatError& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find("'" + encoding + "'"), std::string::npos) << message;
+      EXPECT_NE(message.find("iconv -f " + encoding + " -t UTF-8"), std::string::npos) << message;
+      EXPECT_EQ(message.find('\n'), std::string::npos);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace priormap

@@ -3,10 +3,12 @@
 #include <zlib.h>
 
 #include <fstream>
+#include <functional>
 #include <tuple>
 
 #include <priormap/core/error.hpp>
 #include <priormap/sources/osm_footprints.hpp>
+#include <priormap/sources/osm_streets.hpp>
 #include <priormap/tessellation/normalize.hpp>
 
 namespace priormap {
@@ -336,6 +338,30 @@ TEST_F(OsmFootprints, DamagedCompressionIsNamed) {
       ADD_FAILURE() << cause << " is not noticed";
     } catch (const FormatError& error) {
       EXPECT_NE(std::string(error.what()).find(cause), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(OsmFootprints, EncodingsOfOneByteACharacterAreRead) {
+  const std::string declared = "<?xml version='1.0' encoding='windows-1252'?>", undeclared = "<?xml version='1.0'?>";
+  std::string text = osm(corners + house(1, "5", "", building + OsmText::tag("name", "Caf\xe9 \x80")) + "<way id='10' version='1'><nd ref='1'/><nd ref='3'/>" +
+                         OsmText::tag("highway", "residential") + OsmText::tag("name", "Stra\xdf" "e") + "</way>");
+  text.replace(0, undeclared.size(), declared);
+  for (const fs::path& file : {write("town.osm", text), write("town.osm.bz2", bzip2(text))}) {
+    EXPECT_EQ(read_osm_footprints({file}, 2, diagnostics_).size(), 1u) << file;
+    const auto streets = read_osm_streets(file);
+    ASSERT_EQ(streets.size(), 1u) << file;
+    EXPECT_EQ(streets[0].name, "Stra\u00dfe");
+  }
+  text.replace(0, declared.size(), "<?xml version='1.0' encoding='Shift_JIS'?>");
+  const fs::path file = write("odd.osm", text);
+  for (const std::function<void()>& read : {std::function<void()>([&] { read_osm_footprints({file}, 2, diagnostics_); }), {[&] { read_osm_streets(file); }}}) {
+    try {
+      read();
+      ADD_FAILURE() << "read";
+    } catch (const FormatError& error) {
+      EXPECT_NE(std::string(error.what()).find("'Shift_JIS'"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("iconv"), std::string::npos) << error.what();
     }
   }
 }
