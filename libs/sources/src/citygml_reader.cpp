@@ -18,7 +18,7 @@ constexpr std::size_t max_text = std::size_t{64} << 20;
 constexpr int max_passes = 4;
 
 enum class Tag : std::uint8_t {
-  other, building, bridge, vegetation, building_part, terrain, indoor, boundary, installation, lod_property, geometry_off, tin, polygon, ring, oriented_surface, coordinates,
+  other, building, bridge, vegetation, building_part, terrain, indoor, boundary, installation, lod_property, geometry_off, tin, solid, polygon, ring, oriented_surface, coordinates,
   implicit_geometry, matrix, reference_point, template_geometry, envelope,
 };
 
@@ -30,7 +30,7 @@ Tag tag_of(std::string_view name) {
       {"BridgeInstallation", Tag::installation}, {"BridgeConstructionElement", Tag::installation}, {"BridgeConstructiveElement", Tag::installation},
       {"Room", Tag::indoor}, {"BuildingRoom", Tag::indoor}, {"BuildingFurniture", Tag::indoor},
       {"IntBuildingInstallation", Tag::indoor}, {"InteriorWallSurface", Tag::indoor}, {"CeilingSurface", Tag::indoor},
-      {"FloorSurface", Tag::indoor}, {"BuildingInstallation", Tag::installation}, {"tin", Tag::tin},
+      {"FloorSurface", Tag::indoor}, {"BuildingInstallation", Tag::installation}, {"tin", Tag::tin}, {"Solid", Tag::solid},
       {"Polygon", Tag::polygon}, {"PolygonPatch", Tag::polygon}, {"Triangle", Tag::polygon}, {"Rectangle", Tag::polygon},
       {"exterior", Tag::ring}, {"interior", Tag::ring}, {"outerBoundaryIs", Tag::ring}, {"innerBoundaryIs", Tag::ring},
       {"OrientableSurface", Tag::oriented_surface}, {"posList", Tag::coordinates}, {"pos", Tag::coordinates},
@@ -146,6 +146,7 @@ class CityGmlPass : public XmlReader {
     geometry_on_ = everything_;
     num_vertices_ = 0;
     num_objects_ = 0;
+    num_solids_ = 0;
     feature_srs_.clear();
     polygon_srs_.clear();
     if (everything_) context_.lod = 10;
@@ -160,6 +161,7 @@ class CityGmlPass : public XmlReader {
       case Tag::lod_property: context_.lod = 10 * (name[3] - '0'); geometry_on_ = indoors_ == 0; break;
       case Tag::tin: context_.lod = 10; context_.surface_class = SurfaceClass::terrain; geometry_on_ = true; break;
       case Tag::geometry_off: geometry_on_ = everything_; break;
+      case Tag::solid: context_.solid = ++num_solids_; break;
       case Tag::polygon: in_polygon_ = geometry_on_; polygon_ = ModelPolygon{}; break;
       case Tag::ring: numbers_.clear(); numbers_good_ = true; break;
       case Tag::oriented_surface: if (orientation && *orientation == '-') context_.flip = !context_.flip; break;
@@ -320,7 +322,7 @@ class CityGmlPass : public XmlReader {
   bool geometry_on_ = false;
   int dimension_ = 3;
   int indoors_ = 0;
-  int num_objects_ = 0;
+  int num_objects_ = 0, num_solids_ = 0;
   std::size_t num_features_ = 0, num_vertices_ = 0, num_template_vertices_ = 0;
   std::string document_srs_, feature_srs_, polygon_srs_;
   BuildingModel model_;

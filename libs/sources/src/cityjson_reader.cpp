@@ -128,6 +128,7 @@ class GeometryReader {
     const json semantics = geometry.value("semantics", json::object());
     const json surfaces = semantics.is_object() ? semantics.value("surfaces", json::array()) : json::array();
     const json values = semantics.is_object() ? semantics.value("values", json()) : json();
+    context_.solid = 0;
     read_level(geometry.value("boundaries", json::array()), values, surfaces, levels, vertex);
   }
 
@@ -135,6 +136,7 @@ class GeometryReader {
   template <class Vertex>
   void read_level(const json& boundaries, const json& values, const json& surfaces, int levels, const Vertex& vertex) {
     if (!boundaries.is_array()) document_.fail("'boundaries' is not nested as its geometry type demands");
+    if (levels == 2) context_.solid = ++num_solids_;
     for (std::size_t i = 0; i < boundaries.size(); ++i) {
       const json& value = values.is_array() && i < values.size() ? values[i] : no_value_;
       if (levels > 1) {
@@ -196,6 +198,7 @@ class GeometryReader {
   const Document& document_;
   GeometryItems& items_;
   GeometryContext context_;
+  int num_solids_ = 0;
   const json no_value_;
 };
 

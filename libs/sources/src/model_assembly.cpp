@@ -4,7 +4,6 @@
 #include <array>
 #include <map>
 #include <set>
-#include <unordered_set>
 
 namespace priormap {
 namespace {
@@ -20,6 +19,29 @@ std::string signature(const Polygon3& polygon) {
   std::sort(vertices.begin(), vertices.end());
   return {reinterpret_cast<const char*>(vertices.data()), vertices.size() * sizeof(vertices[0])};
 }
+
+/// Which polygons have been met, wherever they start and whichever way round they go.
+class SeenPolygons {
+ public:
+  /// False where the polygon repeats one of its own body (a boundary surface repeats its solid's, carelessly wound or not) or one of any body that looks the same way.
+  bool insert(const GeometryItem& item) {
+    const Eigen::Vector3d normal = newell_normal(item.polygon.polygon);
+    std::vector<Face>& faces = faces_[signature(item.polygon.polygon)];
+    for (const Face& face : faces) {
+      const bool same_solid = face.solid == item.context.solid || face.solid == 0 || item.context.solid == 0;
+      if ((face.object == item.context.object && same_solid) || !(face.normal.dot(normal) < 0)) return false;
+    }
+    faces.push_back({item.context.object, item.context.solid, normal});
+    return true;
+  }
+
+ private:
+  struct Face {
+    int object, solid;
+    Eigen::Vector3d normal;
+  };
+  std::unordered_map<std::string, std::vector<Face>> faces_;
+};
 
 void reverse(Polygon3& polygon) {
   std::reverse(polygon.exterior.begin(), polygon.exterior.end());
@@ -139,11 +161,11 @@ void assemble(GeometryItems geometry, const GeometryItems& shared, const Buildin
   const std::map<int, int> lods = choose_lods(items, options);
   std::stable_sort(items.begin(), items.end(),
                    [](const GeometryItem& a, const GeometryItem& b) { return a.context.thematic > b.context.thematic; });
-  std::unordered_set<std::string> seen;
+  SeenPolygons seen;
   for (GeometryItem& item : items) {
     const auto lod = lods.find(item.context.object);
     if (lod == lods.end() || lod->second != item.context.lod) continue;
-    if (!seen.insert(signature(item.polygon.polygon)).second) continue;
+    if (!seen.insert(item)) continue;
     item.polygon.surface_class = item.context.surface_class;
     item.polygon.part = item.context.object;
     model.lod = std::max(model.lod, item.context.lod / 10);

@@ -24,6 +24,7 @@ std::string square(const std::string& id, double z, double size = 1) {
          " " + h + " 0 " + a + " " + h + " 0 0 " + h + "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>";
 }
 std::string member(const std::string& geometry) { return "<gml:surfaceMember>" + geometry + "</gml:surfaceMember>"; }
+std::string turned(const std::string& geometry) { return "<gml:OrientableSurface orientation='-'><gml:baseSurface>" + geometry + "</gml:baseSurface></gml:OrientableSurface>"; }
 std::string link(const std::string& id) { return "<gml:surfaceMember xlink:href='#" + id + "'/>"; }
 std::string surface(const std::string& name, const std::string& geometry, int lod = 2) {
   const std::string property = "bldg:lod" + std::to_string(lod) + "MultiSurface";
@@ -53,6 +54,20 @@ TEST(CityGml, APolygonThatSolidAndWallShareCountsOnceAsWall) {
     EXPECT_EQ(models[0].srs_name, "EPSG:25832");
     EXPECT_DOUBLE_EQ(polygon_area(models[0].polygons[0].polygon), 1.0);
   }
+}
+
+TEST(CityGml, APartyWallIsAFaceOfEachBodyThatItParts) {
+  const std::string toward = member(square("", 0)), away = member(turned(square("", 0)));
+  const auto part = [](const std::string& content) { return "<bldg:consistsOfBuildingPart><bldg:BuildingPart>" + content + "</bldg:BuildingPart></bldg:consistsOfBuildingPart>"; };
+  const auto body = [](const std::string& geometry) {
+    return "<gml:solidMember><gml:Solid><gml:exterior><gml:CompositeSurface>" + geometry + "</gml:CompositeSurface></gml:exterior></gml:Solid></gml:solidMember>";
+  };
+  const std::string bodies = "<bldg:lod2Solid><gml:CompositeSolid>" + body(toward) + body(away) + "</gml:CompositeSolid></bldg:lod2Solid>";
+  for (const std::string& content : {part(solid(toward)) + part(solid(away)), part(surface("WallSurface", toward)) + part(surface("WallSurface", away)), bodies})
+    EXPECT_EQ(read(document(building(content)))[0].polygons.size(), 2u) << content;
+  for (const std::string& content : {part(solid(toward)) + part(solid(toward)),                    // stated again by another part
+                                     part(solid(toward) + surface("WallSurface", away))})          // the same body, carelessly wound
+    EXPECT_EQ(read(document(building(content)))[0].polygons.size(), 1u) << content;
 }
 
 TEST(CityGml, EveryPartAndSurfaceMayStateItsEnvelopeAndIsStillOfItsBuilding) {
@@ -124,9 +139,7 @@ TEST(CityGml, ReferencesReachOtherBuildingsAndEndInCirclesOrNowhere) {
 }
 
 TEST(CityGml, AnOrientedSurfaceTurnsItsPolygonOver) {
-  const std::string turned = "<gml:surfaceMember><gml:OrientableSurface orientation='-'><gml:baseSurface>" + square("", 0) +
-                             "</gml:baseSurface></gml:OrientableSurface></gml:surfaceMember>";
-  const auto models = read(document(building(solid(turned))));
+  const auto models = read(document(building(solid(member(turned(square("", 0)))))));
   const Ring3& ring = models[0].polygons[0].polygon.exterior;
   EXPECT_LT((ring[1] - ring[0]).cross(ring[2] - ring[0]).z(), 0);
 }

@@ -88,6 +88,14 @@ TEST(CityJson, EveryVersionsWayToNameCrsAndLevelIsRead) {
   }
 }
 
+TEST(CityJson, APartyWallIsAFaceOfEachSolidThatItParts) {
+  const auto wall_of = [](const std::string& type, const std::string& boundaries) {
+    return read("{" + head + "," + vertices + R"(,"CityObjects":{"b":{"type":"Building","geometry":[{"type":")" + type + R"(","lod":"2","boundaries":)" + boundaries + "}]}}}")[0].polygons.size();
+  };
+  EXPECT_EQ(wall_of("CompositeSolid", "[[[[[0,1,2]]]],[[[[2,1,0]]]]]"), 2u);
+  EXPECT_EQ(wall_of("Solid", "[[[[0,1,2]],[[2,1,0]]]]"), 1u);
+}
+
 TEST(CityJson, TemplatesArePlacedAndTinReliefIsTerrain) {
   const std::string text = "{" + head + "," + vertices + R"(,"geometry-templates":{"templates":[{"type":"MultiSurface","lod":"3","boundaries":[[[0,1,2]]]}],
     "vertices-templates":[[0,0,0],[1,0,0],[0,1,0]]},"CityObjects":{
