@@ -86,11 +86,18 @@ class Resolver {
   std::size_t steps_ = 0;
 };
 
-/// Replaces references by the polygons they bring in; a boundary surface that refers to a polygon of the solid names its class.
+/// How solids refer to a polygon that a boundary surface states.
+struct SolidSides {
+  bool as_stated = false, turned = false;
+};
+
+/// Replaces references by the polygons they bring in; a boundary surface that refers to a polygon of the solid names its class, a solid that refers to the polygon
+/// of a boundary surface says which way it looks.
 std::vector<GeometryItem> resolve_references(GeometryItems& geometry, const GeometryItems& shared, std::size_t& unresolved) {
   std::vector<GeometryItem> resolved;
   std::set<std::pair<const GeometryItem*, int>> brought_in;   // polygon, level; templates may come many times
   std::unordered_map<std::size_t, SurfaceClass> named;
+  std::unordered_map<std::size_t, SolidSides> sides;
   Resolver resolver(geometry, shared);
   for (const GeometryItem& reference : geometry.items) {
     if (reference.reference.empty()) continue;
@@ -99,6 +106,7 @@ std::vector<GeometryItem> resolve_references(GeometryItems& geometry, const Geom
       const GeometryItem& target = home.items[index];
       if (&home == &geometry && target.context.lod == context.lod && target.context.object == context.object) {
         if (context.thematic && !target.context.thematic) named.try_emplace(index, context.surface_class);
+        if (context.solid != 0 && target.context.thematic) (flip ? sides[index].turned : sides[index].as_stated) = true;
         return;
       }
       if (!reference.placement && !brought_in.insert({&target, context.lod}).second) return;
@@ -117,6 +125,7 @@ std::vector<GeometryItem> resolve_references(GeometryItems& geometry, const Geom
       item.context.thematic = true;
     }
     if (item.context.flip) reverse(item.polygon.polygon);
+    if (const auto side = sides.find(i); side != sides.end() && side->second.turned && !side->second.as_stated) reverse(item.polygon.polygon);
     resolved.push_back(std::move(item));
   }
   return resolved;

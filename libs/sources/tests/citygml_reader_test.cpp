@@ -144,6 +144,20 @@ TEST(CityGml, AnOrientedSurfaceTurnsItsPolygonOver) {
   EXPECT_LT((ring[1] - ring[0]).cross(ring[2] - ring[0]).z(), 0);
 }
 
+TEST(CityGml, ASolidSaysWhichWayItsBoundarySurfaceLooks) {
+  const auto looks_up = [](const std::string& content) {
+    const auto models = read(document(building(content)));
+    EXPECT_EQ(models[0].polygons.size(), 1u);
+    return newell_normal(models[0].polygons[0].polygon).z() > 0;
+  };
+  const std::string upward = surface("RoofSurface", member(square("p", 0))), downward = surface("RoofSurface", member(turned(square("p", 0))));
+  const std::string turned_link = member("<gml:OrientableSurface orientation='-'><gml:baseSurface xlink:href='#p'/></gml:OrientableSurface>");
+  EXPECT_TRUE(looks_up(upward + solid(link("p"))));
+  EXPECT_FALSE(looks_up(upward + solid(turned_link)));
+  EXPECT_FALSE(looks_up(solid(turned_link) + upward));
+  EXPECT_FALSE(looks_up(downward + solid(link("p"))));
+}
+
 TEST(CityGml, ImplicitGeometryIsPlacedByMatrixAndReferencePointAndSharedById) {
   auto placed = [](const std::string& geometry, int x) {
     return "<bldg:outerBuildingInstallation><bldg:BuildingInstallation><bldg:lod3ImplicitRepresentation><core:ImplicitGeometry>"
