@@ -189,10 +189,12 @@ class GeometryReader {
     T_model_template.pretranslate(document_.vertex(boundaries[0]));
     const json& shape = document_.templates[index.get<std::size_t>()];
     if (!shape.is_object()) document_.fail("a geometry template is no object");
+    const std::size_t first = items_.items.size();
     read_geometry(shape, [&](const json& i) -> Eigen::Vector3d {
       if (!i.is_number_unsigned() || i.get<std::size_t>() >= document_.template_vertices.size()) document_.fail("a template refers to a vertex that is not there");
-      return T_model_template * document_.template_vertices[i.get<std::size_t>()];
+      return document_.template_vertices[i.get<std::size_t>()];
     });
+    for (std::size_t i = first; i < items_.items.size(); ++i) place(items_.items[i].polygon.polygon, T_model_template);
   }
 
   const Document& document_;

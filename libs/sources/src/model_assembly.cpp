@@ -151,10 +151,9 @@ std::map<int, int> choose_lods(const std::vector<GeometryItem>& items, const Bui
 }  // namespace
 
 void place(Polygon3& polygon, const Eigen::Affine3d& T_model_template) {
-  for (Eigen::Vector3d& p : polygon.exterior) p = T_model_template * p;
-  for (Ring3& hole : polygon.holes) {
-    for (Eigen::Vector3d& p : hole) p = T_model_template * p;
-  }
+  for_each_ring(polygon, [&](Ring3& ring) { for (Eigen::Vector3d& p : ring) p = T_model_template * p; });
+  const bool mirrors = T_model_template.linear().determinant() < 0;
+  if (mirrors) reverse(polygon);
 }
 
 std::vector<std::string> missing_references(const GeometryItems& geometry) {

@@ -35,6 +35,7 @@ struct GeometryItems {
   std::unordered_map<std::string, Range> ranges;
 };
 
+/// A mirrored polygon goes the other way round, so that it looks outward still.
 void place(Polygon3& polygon, const Eigen::Affine3d& T_model_template);
 
 /// Ids referred to but not stated among the items.

@@ -158,6 +158,17 @@ TEST(CityGml, ASolidSaysWhichWayItsBoundarySurfaceLooks) {
   EXPECT_FALSE(looks_up(downward + solid(link("p"))));
 }
 
+TEST(CityGml, AMirroredTemplateLooksOutwardStill) {
+  const std::string installation =
+      "<bldg:outerBuildingInstallation><bldg:BuildingInstallation><bldg:lod3ImplicitRepresentation><core:ImplicitGeometry>"
+      "<core:transformationMatrix>-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</core:transformationMatrix><core:relativeGMLGeometry><gml:MultiSurface>" + member(square("", 0)) +
+      "</gml:MultiSurface></core:relativeGMLGeometry></core:ImplicitGeometry></bldg:lod3ImplicitRepresentation></bldg:BuildingInstallation></bldg:outerBuildingInstallation>";
+  const auto models = read(document(building(installation)));
+  ASSERT_EQ(models[0].polygons.size(), 1u);
+  EXPECT_GT(newell_normal(models[0].polygons[0].polygon).z(), 0);   // the lid of a box is its lid when left and right are swapped
+  EXPECT_DOUBLE_EQ(models[0].polygons[0].polygon.exterior[1].x(), -1);
+}
+
 TEST(CityGml, ImplicitGeometryIsPlacedByMatrixAndReferencePointAndSharedById) {
   auto placed = [](const std::string& geometry, int x) {
     return "<bldg:outerBuildingInstallation><bldg:BuildingInstallation><bldg:lod3ImplicitRepresentation><core:ImplicitGeometry>"

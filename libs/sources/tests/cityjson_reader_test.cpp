@@ -96,6 +96,16 @@ TEST(CityJson, APartyWallIsAFaceOfEachSolidThatItParts) {
   EXPECT_EQ(wall_of("Solid", "[[[[0,1,2]],[[2,1,0]]]]"), 1u);
 }
 
+TEST(CityJson, AMirroredTemplateLooksOutwardStill) {
+  const auto looks_up = [](const std::string& matrix) {
+    return newell_normal(read("{" + head + "," + vertices + R"(,"geometry-templates":{"templates":[{"type":"MultiSurface","lod":"3","boundaries":[[[0,1,2]]]}],
+      "vertices-templates":[[0,0,0],[1,0,0],[0,1,0]]},"CityObjects":{"b":{"type":"Building","geometry":[{"type":"GeometryInstance","template":0,"boundaries":[1],
+      "transformationMatrix":)" + matrix + "}]}}}")[0].polygons[0].polygon).z() > 0;
+  };
+  EXPECT_TRUE(looks_up("[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]"));
+  EXPECT_TRUE(looks_up("[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]"));
+}
+
 TEST(CityJson, TemplatesArePlacedAndTinReliefIsTerrain) {
   const std::string text = "{" + head + "," + vertices + R"(,"geometry-templates":{"templates":[{"type":"MultiSurface","lod":"3","boundaries":[[[0,1,2]]]}],
     "vertices-templates":[[0,0,0],[1,0,0],[0,1,0]]},"CityObjects":{
