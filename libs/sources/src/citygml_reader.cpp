@@ -163,7 +163,11 @@ class CityGmlPass : public XmlReader {
       case Tag::geometry_off: geometry_on_ = everything_; break;
       case Tag::solid: context_.solid = ++num_solids_; break;
       case Tag::polygon: in_polygon_ = geometry_on_; polygon_ = ModelPolygon{}; break;
-      case Tag::ring: numbers_.clear(); numbers_good_ = true; break;
+      case Tag::ring:
+        numbers_.clear();
+        numbers_good_ = true;
+        if (name == "interior" && !in_polygon_) geometry_on_ = false;   // of a solid: a void
+        break;
       case Tag::oriented_surface: if (orientation && *orientation == '-') context_.flip = !context_.flip; break;
       case Tag::coordinates: case Tag::matrix: collecting_ = geometry_on_; text_.clear(); break;
       case Tag::implicit_geometry: matrix_ = Eigen::Affine3d::Identity(); reference_point_.setZero(); template_items_ = {0, 0}; break;

@@ -137,7 +137,8 @@ class GeometryReader {
   void read_level(const json& boundaries, const json& values, const json& surfaces, int levels, const Vertex& vertex) {
     if (!boundaries.is_array()) document_.fail("'boundaries' is not nested as its geometry type demands");
     if (levels == 2) context_.solid = ++num_solids_;
-    for (std::size_t i = 0; i < boundaries.size(); ++i) {
+    const std::size_t seen_from_outside = levels == 2 ? std::min<std::size_t>(1, boundaries.size()) : boundaries.size();   // inner shells are voids
+    for (std::size_t i = 0; i < seen_from_outside; ++i) {
       const json& value = values.is_array() && i < values.size() ? values[i] : no_value_;
       if (levels > 1) {
         read_level(boundaries[i], value, surfaces, levels - 1, vertex);

@@ -158,6 +158,14 @@ TEST(CityGml, ASolidSaysWhichWayItsBoundarySurfaceLooks) {
   EXPECT_FALSE(looks_up(downward + solid(link("p"))));
 }
 
+TEST(CityGml, TheVoidInsideASolidIsNotSeen) {
+  const std::string hollow = "<bldg:lod2Solid><gml:Solid><gml:exterior><gml:CompositeSurface>" + member(square("", 0, 4)) + "</gml:CompositeSurface></gml:exterior>"
+                             "<gml:interior><gml:CompositeSurface>" + member(square("", 1)) + "</gml:CompositeSurface></gml:interior></gml:Solid></bldg:lod2Solid>";
+  const auto models = read(document(building(hollow)));
+  ASSERT_EQ(models[0].polygons.size(), 1u);
+  EXPECT_DOUBLE_EQ(polygon_area(models[0].polygons[0].polygon), 16);
+}
+
 TEST(CityGml, AMirroredTemplateLooksOutwardStill) {
   const std::string installation =
       "<bldg:outerBuildingInstallation><bldg:BuildingInstallation><bldg:lod3ImplicitRepresentation><core:ImplicitGeometry>"

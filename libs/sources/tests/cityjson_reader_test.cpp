@@ -96,6 +96,12 @@ TEST(CityJson, APartyWallIsAFaceOfEachSolidThatItParts) {
   EXPECT_EQ(wall_of("Solid", "[[[[0,1,2]],[[2,1,0]]]]"), 1u);
 }
 
+TEST(CityJson, TheVoidInsideASolidIsNotSeen) {
+  const auto models = read("{" + head + "," + vertices + R"(,"CityObjects":{"b":{"type":"Building","geometry":[{"type":"Solid","lod":"2","boundaries":[[[[0,1,2]]],[[[0,1,4]]]]}]}}})");
+  ASSERT_EQ(models[0].polygons.size(), 1u);
+  EXPECT_DOUBLE_EQ(models[0].polygons[0].polygon.exterior[2].z(), 100);
+}
+
 TEST(CityJson, AMirroredTemplateLooksOutwardStill) {
   const auto looks_up = [](const std::string& matrix) {
     return newell_normal(read("{" + head + "," + vertices + R"(,"geometry-templates":{"templates":[{"type":"MultiSurface","lod":"3","boundaries":[[[0,1,2]]]}],
