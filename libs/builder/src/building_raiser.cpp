@@ -91,6 +91,8 @@ Building BuildingRaiser::raise(std::uint32_t footprint, Diagnostics& diagnostics
   building.surface_m = surface_above(own, *ground);
   const bool shows_roof = building.surface_m && *building.surface_m >= lowest_roof_m;
   const BuildingHeight height = building_height(attributes, shows_roof ? building.surface_m : std::nullopt, run_m(own, attributes), options_);
+  if (attributes.min_level.value_or(0) > 0 && !(height.bottom_m > 0) && !attributes.min_height_m)
+    diagnostics.add(DiagnosticCode::unusable_height, own.footprint.id, "by its levels its walls would start above its height; they start on the ground");
   building.rule = height.rule;
   building.feature = feature(own, *ground, height);
   for (const Polygon2& polygon : own.polygons) building.solids.push_back(solid(polygon, attributes, *ground, height, own, diagnostics));
