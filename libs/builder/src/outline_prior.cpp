@@ -1,6 +1,7 @@
 #include <priormap/builder/outline_prior.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <iomanip>
 #include <iterator>
 #include <sstream>
@@ -114,6 +115,23 @@ void warn_of_sunken_surface(const WrittenBuildings& written, const OutlineOption
               " buildings: " + (options.terrain.empty() ? "" : "were --terrain and --heights-from given the wrong way round, or ") + "do their heights count from different surfaces?");
 }
 
+/// A file geodatabase is a directory: the hash is of its files' names and bytes, but for the locks that readers leave.
+std::string sha256_geodatabase(const std::filesystem::path& directory) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory))
+    if (entry.is_regular_file() && entry.path().extension() != ".lock") files.push_back(entry.path().lexically_relative(directory));
+  std::ranges::sort(files);
+  Sha256 hash;
+  for (const std::filesystem::path& file : files) hash.update(file.generic_string() + " " + sha256_file(directory / file) + "\n");
+  return hash.hex_digest();
+}
+
+std::string content_hash(const std::filesystem::path& path) {
+  if (!std::filesystem::is_directory(path)) return sha256_file(path);
+  if (path.extension() == ".gdb") return sha256_geodatabase(path);
+  throw IoError(path, "is a directory; name the files in it");
+}
+
 }  // namespace
 
 OutlineCounts& OutlineCounts::operator+=(const OutlineCounts& other) {
@@ -126,9 +144,10 @@ OutlineCounts& OutlineCounts::operator+=(const OutlineCounts& other) {
 
 std::vector<HashedFile> distinct_files(const std::vector<std::filesystem::path>& files) {
   std::vector<HashedFile> hashed;
-  for (const std::filesystem::path& file : files) {
+  for (const std::filesystem::path& named : files) {
+    const std::filesystem::path file = named.has_filename() ? named : named.parent_path();   // "town.gdb/"
     if (!std::filesystem::exists(file)) throw IoError(file, "no such file");
-    hashed.push_back({file, sha256_file(file)});
+    hashed.push_back({file, content_hash(file)});
   }
   std::ranges::sort(hashed, [](const HashedFile& a, const HashedFile& b) { return std::tie(a.sha256, a.path) < std::tie(b.sha256, b.path); });
   const auto repeated = std::ranges::unique(hashed, {}, &HashedFile::sha256);

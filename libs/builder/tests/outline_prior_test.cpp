@@ -374,5 +374,21 @@ TEST_F(OutlinePrior, NothingToBuildIsAnErrorAndLeavesNothing) {
   EXPECT_FALSE(fs::exists(folder_ / "prior"));
 }
 
+TEST_F(OutlinePrior, AFileGeodatabaseIsOneInputAndOtherFoldersAreNone) {
+  const auto geodatabase = [&](const std::string& name, const std::string& table) {
+    fs::create_directories(folder_ / name);
+    std::ofstream(folder_ / name / "a00000001.gdbtable") << table;
+    return folder_ / name;
+  };
+  const fs::path town = geodatabase("town.gdb", "houses"), copy = geodatabase("copy.gdb", "houses"), other = geodatabase("other.gdb", "huts");
+  EXPECT_EQ(distinct_files({town, copy, other}).size(), 2u);
+  const std::string hash = distinct_files({town})[0].sha256;
+  std::ofstream(town / "_gdb.host.lock") << "a reader was here";
+  const HashedFile with_slash = distinct_files({town / ""})[0];
+  EXPECT_EQ(with_slash.sha256, hash);
+  EXPECT_EQ(with_slash.path.filename(), "town.gdb");
+  EXPECT_THROW(distinct_files({folder_}), IoError);
+}
+
 }  // namespace
 }  // namespace priormap
