@@ -167,7 +167,7 @@ OutlineReport build_outline_prior(OutlineInput input, const PriorOptions& prior_
   PriorWriter writer(output, manifest_of(frames, prior_options, sources, generator), overwrite);
 
   const std::vector<WrittenBuildings> written =
-      write_outlines(std::exchange(input.footprints, {}), frames, sources, prior_options, outline_options, writer, diagnostics, threads, events);
+      write_outlines(without_strays(std::exchange(input.footprints, {}), frames, diagnostics), frames, sources, prior_options, outline_options, writer, diagnostics, threads, events);
   warn_of_impossible_heights(frames, outline_options, events);
   WrittenBuildings all;
   for (std::size_t i = 0; i < sources.size(); ++i) {

@@ -227,6 +227,11 @@ Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& 
   return asked;
 }
 
+bool fits_lengths(const Crs& prior, const LonLatArea& area) {
+  const AreaDistortion over = distortion_over(prior, area);
+  return !over.at_data().is_too_much() && !over.at_corners.is_too_much();
+}
+
 std::optional<std::string> vertical_name(const Crs& prior) {
   if (!prior.has_vertical()) return std::nullopt;
   const auto vertical = prior.vertical();

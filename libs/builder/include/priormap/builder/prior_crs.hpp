@@ -29,6 +29,9 @@ InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>
 /// touch, or a named vertical CRS is asked from undeclared heights, or inputs disagree on their heights and none is asked for.
 Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const std::optional<LonLatArea>& area, const Events& events);
 
+/// Whether a prior's CRS makes lengths wrong by 1 % at most all over an area.
+bool fits_lengths(const Crs& prior, const LonLatArea& area);
+
 /// The vertical part of a prior's CRS as the manifest names it; nothing where heights are undeclared.
 std::optional<std::string> vertical_name(const Crs& prior);
 
