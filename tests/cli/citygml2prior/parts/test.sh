@@ -63,19 +63,23 @@ json() {   # as gml, one box an object
   echo "{\"type\":\"CityJSON\",\"version\":\"1.1\",\"transform\":{\"scale\":[1,1,1],\"translate\":[0,0,0]},\"metadata\":{\"referenceSystem\":\"https://www.opengis.net/def/crs/EPSG/0/25832\"},"
   echo "\"CityObjects\":{${objects/CHILDREN/${children:+\"children\":[${children%,}],}}},\"vertices\":[${vertices%,}]}"
 }
-count() {   # X0 X1 Y0 Y1 Z0 Z1: points inside
-  awk -v x0="$1" -v x1="$2" -v y0="$3" -v y1="$4" -v z0="$5" -v z1="$6" '$1 > x0 && $1 < x1 && $2 > y0 && $2 < y1 && $3 > z0 && $3 < z1 { ++points } END { print points + 0 }' points
+count() {   # X0 X1 Y0 Y1 Z0 Z1 [upright]: points inside, all or those of walls
+  awk -v x0="$1" -v x1="$2" -v y0="$3" -v y1="$4" -v z0="$5" -v z1="$6" '$1 > x0 && $1 < x1 && $2 > y0 && $2 < y1 && $3 > z0 && $3 < z1 { ++points } END { print points + 0 }' "${7:-points}"
 }
 build() {
   rm -rf prior prior.xyz*
+  : >upright
+  : >level
   case $1 in *json) set -- "$1" --assume-vertical EPSG:7837 ;; esac
   succeeds citygml2prior "$@" --quiet -o prior
   succeeds priorexport prior -o prior.xyz
   local origin   # what positions in the file count from
   origin=$(tr -d ' \n' <prior.xyz.georef.json | sed 's/.*"origin":\[\([^]]*\)\].*/\1/')
-  awk -v origin="$origin" -v e=$EAST -v n=$NORTH 'BEGIN { split(origin, o, ",") } !/^#/ { printf "%.3f %.3f %.3f\n", $1 + o[1] - e, $2 + o[2] - n, $3 + o[3] }' prior.xyz >points
+  awk -v origin="$origin" -v e=$EAST -v n=$NORTH 'BEGIN { split(origin, o, ",") } !/^#/ { printf "%.3f %.3f %.3f\n", $1 + o[1] - e, $2 + o[2] - n, $3 + o[3] > ($6 * $6 < 0.5 ? "upright" : "level") }' prior.xyz
+  cat upright level >points
 }
 none() { [ "$(count "${@:2}")" -eq 0 ] || die "$form: $1: $(count "${@:2}") points"; }
+none_upright() { [ "$(count "${@:2}" upright)" -eq 0 ] || die "$form: $1: $(count "${@:2}" upright) points of walls"; }
 some() { [ "$(count "${@:3}")" -eq "$2" ] || die "$form: $1: $(count "${@:3}") points instead of $2"; }
 
 body="0 0 20 20 100 108"
@@ -106,6 +110,7 @@ for form in "gml solid" "gml surfaces" "json solid" "json surfaces"; do
   $language $level "$body" "0 0 10 20 100 108" "10 0 20 20 100 108" >filled.$language
   build filled.$language
   none "the wall between parts" 9.9 10.1 0.3 19.7 100.3 107.7
+  none_upright "its top row" 9.9 10.1 0.3 19.7 107.9 108.1
   some "the roof of a part" 741 0.3 9.7 0.3 19.7 107.9 108.1
 done
 
