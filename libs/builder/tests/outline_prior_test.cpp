@@ -196,6 +196,18 @@ TEST_F(OutlinePrior, ARoofThatCannotBeBuiltIsFlatAndCounted) {
   for (const Eigen::Vector3d& p : points()) EXPECT_LE(p.z(), 12000);
 }
 
+TEST_F(OutlinePrior, ARoofWithoutHeightIsFlatAsStated) {
+  std::vector<Footprint> town{box("by height", 0, 0, 10, 10), box("by angle", 50, 0, 10, 10)};
+  for (Footprint& house : town) {
+    house.attributes.height_m = 6;
+    house.attributes.roof_shape = RoofShape::gabled;
+  }
+  town[0].attributes.roof_height_m = 0;
+  town[1].attributes.roof_angle_deg = 0;
+  EXPECT_EQ(build(town).diagnostics.total(), 0u);
+  for (const Eigen::Vector3d& p : points()) EXPECT_LE(p.z(), 6000);
+}
+
 TEST_F(OutlinePrior, WhatIsLargerThanAnyBuildingIsCountedAndLeftOut) {
   const OutlineReport report = build({box("house", 0, 0, 10, 10), box("continent", 0, 50, 1e6, 1e6), box("needle", 0, 20, 6000, 1)});
   EXPECT_EQ(report.counts.outlines, 1u);
