@@ -208,6 +208,25 @@ TEST_F(OutlinePrior, ARoofWithoutHeightIsFlatAsStated) {
   for (const Eigen::Vector3d& p : points()) EXPECT_LE(p.z(), 6000);
 }
 
+TEST_F(OutlinePrior, AnOutlineGivenTwiceStandsOnce) {
+  Footprint house = box("house", 0, 0, 10, 6), again = house, raised = house;
+  again.id = "again";
+  std::ranges::rotate(again.rings[0], again.rings[0].begin() + 2);
+  std::ranges::reverse(again.rings[0]);
+  again.attributes.height_m = 6;
+  raised.id = "raised";   // stands on the others
+  raised.attributes.min_height_m = 20;
+  raised.attributes.height_m = 25;
+  build({again, raised}, "once");
+  for (const auto& [name, town] : {std::pair("in order", std::vector{house, again, raised}), {"turned round", std::vector{raised, again, house}}}) {
+    const OutlineReport report = build(town, name);
+    EXPECT_EQ(report.counts.outlines, 2u);
+    EXPECT_EQ(report.diagnostics.counts(), (std::map<DiagnosticCode, std::size_t>{{DiagnosticCode::repeated_outline, 1}}));
+    EXPECT_EQ(report.diagnostics.entries().front().feature, "house") << "what says its height stays";
+    EXPECT_EQ(points(name), points("once"));
+  }
+}
+
 TEST_F(OutlinePrior, WhatIsLargerThanAnyBuildingIsCountedAndLeftOut) {
   const OutlineReport report = build({box("house", 0, 0, 10, 10), box("continent", 0, 50, 1e6, 1e6), box("needle", 0, 20, 6000, 1)});
   EXPECT_EQ(report.counts.outlines, 1u);
