@@ -318,6 +318,16 @@ void read_single_document(Document& document, const BuildingModelOptions& option
   stream_json(document, [](const std::string&, const json&) {}, [&](const std::string& id, const json& object) { buildings.add(id, object); });
 }
 
+/// Whether the first line ends an object and the next begins one, which no single JSON value does.
+bool has_object_after_line(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  char last = 0;
+  for (char c; stream.get(c) && c != '\n';)
+    if (!is_blank(c)) last = c;
+  return last == '}' && (stream >> std::ws).peek() == '{';
+}
+
 json parse_line(const Document& document, const std::string& line, std::size_t number) {
   const json::parser_callback_t callback = [&](int depth, json::parse_event_t, json&) {
     if (depth > max_depth) document.fail("line " + std::to_string(number) + ": nested deeper than " + std::to_string(max_depth) + " levels");
@@ -356,7 +366,7 @@ void read_sequence(Document& document, const BuildingModelOptions& options, cons
 
 CityJsonLayout cityjson_layout(const std::filesystem::path& file) {
   const std::string extension = file.extension();
-  return extension == ".jsonl" || extension == ".ndjson" ? CityJsonLayout::sequence : CityJsonLayout::document;
+  return extension == ".jsonl" || extension == ".ndjson" || has_object_after_line(file) ? CityJsonLayout::sequence : CityJsonLayout::document;
 }
 
 void read_cityjson(const std::filesystem::path& file, CityJsonLayout layout, const BuildingModelOptions& options, const BuildingModelSink& sink) {

@@ -131,9 +131,11 @@ TEST(CityJson, ASequenceGivesEachFeatureItsOwnVertices) {
     "geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]]]}]}}})";
   std::string line = feature;
   std::erase(line, '\n');
-  const auto models = read(header + "\n" + line + "\n" + line + "\n", {}, ".city.jsonl");
-  ASSERT_EQ(models.size(), 2u);
-  EXPECT_EQ(models[1].polygons[0].polygon.exterior[0], Eigen::Vector3d(10, 20, 30));
+  for (const std::string extension : {".city.jsonl", ".json"}) {   // by name or by content
+    const auto models = read(header + "\n" + line + "\n" + line + "\n", {}, extension);
+    ASSERT_EQ(models.size(), 2u);
+    EXPECT_EQ(models[1].polygons[0].polygon.exterior[0], Eigen::Vector3d(10, 20, 30));
+  }
 }
 
 TEST(CityJson, BadInputIsRefusedWithItsCause) {
