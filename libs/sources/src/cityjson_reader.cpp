@@ -80,9 +80,17 @@ void read_vertices(const Document& document, const json& value, std::vector<Eige
   for (const json& v : value) vertices.push_back(vector3(document, v));
 }
 
+/// Minor versions add what can be left unread, major ones change what things mean.
+void require_known_version(const Document& document, const json& version) {
+  const std::string text = version.is_string() ? version.get<std::string>() : version.dump();
+  const std::string major = text.substr(0, text.find('.'));
+  if (major != "1" && major != "2") document.fail("is CityJSON of version \"" + text + "\", of which nothing is known; convert it to version 2.0, such as with cjio");
+}
+
 /// Members of the root (or of a CityJSONSeq header) but for its objects and vertices.
 void read_header(Document& document, const std::string& key, const json& value) {
   if (key == "type" && value != "CityJSON" && value != "CityJSONFeature") document.fail("'type' is not CityJSON");
+  if (key == "version") require_known_version(document, value);
   if (key == "transform" && value.is_object()) {
     document.scale = vector3(document, value.value("scale", json()));
     document.translate = vector3(document, value.value("translate", json()));

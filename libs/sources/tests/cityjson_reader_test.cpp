@@ -138,6 +138,20 @@ TEST(CityJson, ASequenceGivesEachFeatureItsOwnVertices) {
   }
 }
 
+TEST(CityJson, UnknownMinorVersionsAreReadAndUnknownMajorOnesRefused) {
+  const auto message = [](const std::string& version) -> std::string {
+    try {
+      read(R"({"type":"CityJSON","version":)" + version + "," + vertices + R"(,"CityObjects":{"b":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]]]}]}}})");
+      return "";
+    } catch (const FormatError& error) {
+      return error.what();
+    }
+  };
+  for (const std::string version : {R"("1.0")", R"("1.0.3")", R"("1.9")", R"("2.0")", R"("2.7")", "2"}) EXPECT_EQ(message(version), "") << version;
+  for (const std::string version : {R"("9.0")", R"("0.9")", R"("20.1")", R"("3.0")", "null"}) EXPECT_NE(message(version).find("version"), std::string::npos) << version;
+  EXPECT_NE(message(R"("9.0")").find("\"9.0\""), std::string::npos);
+}
+
 TEST(CityJson, BadInputIsRefusedWithItsCause) {
   auto message = [](const std::string& text) -> std::string {
     try {
