@@ -102,7 +102,7 @@ ModelFrames::Frame& ModelFrames::frame_of(const BuildingModel& model, const std:
   const InputCrs input = resolve_input_crs(options_, declared_crs(model.srs_name, file, !options_.source_crs.empty()), file, events_);
   resolve_prior_crs(options_, {*first_, input}, std::nullopt, {});   // refuses heights that do not go together
   Frame frame{input.crs, std::nullopt, {input.crs.name(), input.assumed_vertical, {}}};
-  Transformer transformer(input.crs, *prior_, around(reach(input.crs.horizontal(), place_of(model, input.crs, file))));
+  Transformer transformer = transformer_to_prior(input.crs, *prior_, around(reach(input.crs.horizontal(), place_of(model, input.crs, file))), file);
   frame.source.operation = transformer.operation();
   if (!transformer.is_identity()) frame.to_prior = std::move(transformer);
   return frames_.emplace(model.srs_name, std::move(frame)).first->second;

@@ -120,7 +120,7 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
   if (area && prior_options.bbox.empty())   // a box says what is wanted
     for (const OutlineGroup& stray : beyond_prior(groups.strays, *area, prior, outlines, events)) left_out.insert(stray.cells.begin(), stray.cells.end());
   std::vector<Transformer> prior_from_outlines;
-  for (const InputCrs& outline : outlines) prior_from_outlines.emplace_back(outline.crs.horizontal(), prior.horizontal(), area);
+  for (const InputCrs& outline : outlines) prior_from_outlines.push_back(transformer_to_prior(outline.crs.horizontal(), prior.horizontal(), area, outline.file));
   return {std::move(prior_from_outlines), prior, area, first.assumed_vertical,
           GroundModel(std::move(terrain_heights), constant_m, constant_to_prior(first, prior)), std::move(surface_heights), std::move(left_out)};
 }
