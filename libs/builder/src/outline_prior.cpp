@@ -14,6 +14,7 @@
 #include <priormap/geodesy/image_bounds.hpp>
 #include <priormap/prior/prior_writer.hpp>
 
+#include "content_hash.hpp"
 #include "raster_faults.hpp"
 #include "outline_crs.hpp"
 #include "outline_stages.hpp"
@@ -115,23 +116,6 @@ void warn_of_sunken_surface(const WrittenBuildings& written, const OutlineOption
               " buildings: " + (options.terrain.empty() ? "" : "were --terrain and --heights-from given the wrong way round, or ") + "do their heights count from different surfaces?");
 }
 
-/// A file geodatabase is a directory: the hash is of its files' names and bytes, but for the locks that readers leave.
-std::string sha256_geodatabase(const std::filesystem::path& directory) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory))
-    if (entry.is_regular_file() && entry.path().extension() != ".lock") files.push_back(entry.path().lexically_relative(directory));
-  std::ranges::sort(files);
-  Sha256 hash;
-  for (const std::filesystem::path& file : files) hash.update(file.generic_string() + " " + sha256_file(directory / file) + "\n");
-  return hash.hex_digest();
-}
-
-std::string content_hash(const std::filesystem::path& path) {
-  if (!std::filesystem::is_directory(path)) return sha256_file(path);
-  if (path.extension() == ".gdb") return sha256_geodatabase(path);
-  throw IoError(path, "is a directory; name the files in it");
-}
-
 }  // namespace
 
 OutlineCounts& OutlineCounts::operator+=(const OutlineCounts& other) {
@@ -146,7 +130,9 @@ std::vector<HashedFile> distinct_files(const std::vector<std::filesystem::path>&
   std::vector<HashedFile> hashed;
   for (const std::filesystem::path& named : files) {
     const std::filesystem::path file = named.has_filename() ? named : named.parent_path();   // "town.gdb/"
-    if (!std::filesystem::exists(file)) throw IoError(file, "no such file");
+    const bool is_gdals_own = file.string().starts_with("/vsi");   // inside an archive, such as /vsizip/town.zip/town.shp
+    if (!is_gdals_own && !std::filesystem::exists(file)) throw IoError(file, "no such file");
+    if (std::filesystem::is_directory(file) && file.extension() != ".gdb") throw IoError(file, "is a directory; name the files in it");
     hashed.push_back({file, content_hash(file)});
   }
   std::ranges::sort(hashed, [](const HashedFile& a, const HashedFile& b) { return std::tie(a.sha256, a.path) < std::tie(b.sha256, b.path); });

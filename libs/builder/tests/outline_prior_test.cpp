@@ -419,6 +419,7 @@ TEST_F(OutlinePrior, AFileGeodatabaseIsOneInputAndOtherFoldersAreNone) {
   EXPECT_EQ(with_slash.sha256, hash);
   EXPECT_EQ(with_slash.path.filename(), "town.gdb");
   EXPECT_THROW(distinct_files({folder_}), IoError);
+  EXPECT_EQ(distinct_files({"/vsizip/town.zip/town.shp"}).size(), 1u) << "GDAL finds it, or says that it does not";
 }
 
 }  // namespace
