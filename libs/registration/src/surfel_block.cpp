@@ -26,7 +26,7 @@ void SurfelMap::Block::merge(std::span<const Item> items, std::span<const std::u
     auto entry = std::find_if(in_voxel, after_voxel, same);
     if (entry == after_voxel) entry = std::find_if(entries_.begin() + std::ptrdiff_t(before), entries_.end(), same);
     if (entry == entries_.end()) {
-      entries_.push_back({item.surfel, count * item.normal, count * item.sigma_m * item.sigma_m, item.trace, item.around, item.voxel, item.of_prior, true, item.feature});
+      entries_.push_back({item.surfel, count * item.normal, count * item.sigma_m * item.sigma_m, item.trace, item.num_in_columns, item.around, item.voxel, item.of_prior, true, item.feature});
       continue;
     }
     if (entry->surfel.count >= float(options.max_count)) continue;
@@ -34,6 +34,7 @@ void SurfelMap::Block::merge(std::span<const Item> items, std::span<const std::u
     entry->normal_sum += count * item.normal;
     entry->variance_sum += count * item.sigma_m * item.sigma_m;
     entry->trace_sum += item.trace;
+    entry->num_in_columns += item.num_in_columns;
     if (!item.around.tells_nothing()) entry->around = item.around;
     entry->changed = true;
   }
@@ -88,6 +89,8 @@ SurfelShape SurfelMap::Block::shape_of(const Entry& entry, float voxel_m) {
     else if (cosine > near_cone_cosine)
       shape = shape_around(entry.surfel, voxel_m);
   }
+  constexpr float most_in_columns = 0.7f;
+  if (shape.directed < 0 && entry.num_in_columns > most_in_columns * entry.surfel.count) shape = {};   // no pole
   if (shape.tells_nothing()) shape = entry.around;
   if (entry.of_prior && shape.tells_nothing()) {  // point to point, as exact as points lie close
     shape.isotropic = 1;

@@ -18,6 +18,7 @@ struct SurfelMap::Item {
   float sigma_m = 0;
   Surfel surfel;  // relative to the block's corner
   Eigen::Vector3f trace = Eigen::Vector3f::Zero();  // of one laser: the normal of its cone there, times the points
+  float num_in_columns = 0;  // points that stand alone as one column of the scanning
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   SurfelShape around;
   std::uint32_t feature = PointCloud::no_feature;
@@ -47,6 +48,7 @@ class SurfelMap::Block {
     Eigen::Vector3f normal_sum = Eigen::Vector3f::Zero();  // zero: the normal comes from the moments
     float variance_sum = 0;
     Eigen::Vector3f trace_sum = Eigen::Vector3f::Zero();
+    float num_in_columns = 0;
     SurfelShape around;   // of the scan that told last
     std::uint16_t voxel = 0;
     bool of_prior = false;

@@ -84,6 +84,7 @@ void SurfelMap::insert(const SurfelCloud& scan, const Eigen::Isometry3d& T_map_s
     item.surfel.count = s.count;
     item.surfel.covariance = turned(s.covariance, R);
     if (!is_wide(s, float(options_.voxel_m))) item.trace = s.count * (R * cone_normal(s.mean));
+    if (is_one_column(s)) item.num_in_columns = s.count;
     if (!scan.around.empty()) {
       item.around = scan.around[i];
       item.around.normal = R * item.around.normal;

@@ -44,6 +44,13 @@ bool is_wide(const Surfel& surfel, float voxel_m) {
   return minors > least_m * least_m * trace;   // of a plane: width^2 length^2 > least^2 (width^2 + length^2)
 }
 
+bool is_one_column(const Surfel& surfel) {
+  constexpr float least_width_m = 0.02f;
+  const float x = surfel.mean.x(), y = surfel.mean.y();
+  const auto& c = surfel.covariance;   // xx, xy, xz, yy, yz, zz
+  return c[0] * y * y - 2 * c[1] * x * y + c[3] * x * x < least_width_m * least_width_m * (x * x + y * y);
+}
+
 SurfelShape shape_of_moments(const Surfel& surfel, float voxel_m) { return shape_wider_than(least_width_m(voxel_m), surfel, voxel_m); }
 
 SurfelShape shape_around(const Surfel& all, float voxel_m) {
