@@ -36,6 +36,12 @@ double storeys_m(const BuildingAttributes& attributes, const Rise& rise, double 
   return (*attributes.levels + in_roof) * storey_m + rise.metres;
 }
 
+/// Of a building whose height and levels are known: offices and halls have higher storeys than flats. Else the usual one.
+double own_storey_m(const BuildingAttributes& attributes, const Rise& rise, std::optional<double> top_m, double usual_m) {
+  const double storeys = attributes.levels.value_or(0) + (rise.metres > 0 ? 0 : attributes.roof_levels.value_or(0));
+  return top_m && storeys > 0 && *top_m > rise.metres ? (*top_m - rise.metres) / storeys : usual_m;
+}
+
 }  // namespace
 
 double height_sigma_m(HeightRule rule, const OutlineOptions& options) {
@@ -59,7 +65,9 @@ std::string to_string(HeightRule rule) {
 BuildingHeight building_height(const BuildingAttributes& attributes, std::optional<double> surface_m, double run_m, const OutlineOptions& options) {
   const double storey_m = options.storey_height_m;
   const Rise rise = roof_rise(attributes, run_m, storey_m);
-  const double bottom_m = attributes.min_height_m.value_or(attributes.min_level.value_or(0) * storey_m);
+  const std::optional<double> surface_top_m = surface_m ? std::optional(*surface_m + 0.3 * rise.metres) : std::nullopt;
+  const double bottom_m = attributes.min_height_m.value_or(
+      attributes.min_level.value_or(0) * own_storey_m(attributes, rise, attributes.height_m ? attributes.height_m : surface_top_m, storey_m));
   const double by_levels_m = attributes.levels ? storeys_m(attributes, rise, storey_m) : 0;
 
   BuildingHeight height;
@@ -67,9 +75,10 @@ BuildingHeight building_height(const BuildingAttributes& attributes, std::option
   if (attributes.height_m) {
     height.rule = HeightRule::tag;
     height.top_m = *attributes.height_m;
+    if (bottom_m >= height.top_m) height.bottom_m = 0;   // no walls could stand between them
   } else if (surface_m && *surface_m > bottom_m) {
     height.rule = HeightRule::dsm;
-    height.top_m = *surface_m + 0.3 * rise.metres;
+    height.top_m = *surface_top_m;
   } else if (by_levels_m > bottom_m) {
     height.rule = HeightRule::levels;
     height.top_m = by_levels_m;

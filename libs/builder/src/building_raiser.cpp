@@ -66,6 +66,11 @@ RoofSpec roof_spec(const BuildingAttributes& attributes, const Polygon2& outline
   return spec;
 }
 
+/// The source says that its roof, whatever its shape, rises by nothing.
+bool is_stated_flat(const BuildingAttributes& attributes) {
+  return attributes.roof_height_m ? *attributes.roof_height_m == 0 : attributes.roof_angle_deg == 0.0;
+}
+
 double run_m(const ProjectedFootprint& own, const BuildingAttributes& attributes) {
   const Polygon2& outline = own.polygons.front();
   return attributes.roof_shape == RoofShape::flat ? 0 : roof_run_m(outline, roof_spec(attributes, outline, 1));
@@ -91,6 +96,8 @@ Building BuildingRaiser::raise(std::uint32_t footprint, Diagnostics& diagnostics
   building.surface_m = surface_above(own, *ground);
   const bool shows_roof = building.surface_m && *building.surface_m >= lowest_roof_m;
   const BuildingHeight height = building_height(attributes, shows_roof ? building.surface_m : std::nullopt, run_m(own, attributes), options_);
+  if (attributes.min_level.value_or(0) > 0 && !(height.bottom_m > 0) && !attributes.min_height_m)
+    diagnostics.add(DiagnosticCode::unusable_height, own.footprint.id, "by its levels its walls would start above its height; they start on the ground");
   building.rule = height.rule;
   building.feature = feature(own, *ground, height);
   for (const Polygon2& polygon : own.polygons) building.solids.push_back(solid(polygon, attributes, *ground, height, own, diagnostics));
@@ -114,7 +121,7 @@ BuildingSolid BuildingRaiser::solid(const Polygon2& outline, const BuildingAttri
   solid.bounds = bounds_of(outline.exterior);
   if (attributes.roof_shape != RoofShape::flat && attributes.roof_shape != RoofShape::other) {
     if (height.eaves_m < height.top_m) solid.roof = make_roof(outline, ground.median_z + height.eaves_m, roof_spec(attributes, outline, height.top_m - height.eaves_m));
-    if (!solid.roof) report_flat(own, "cannot be built over its outline", diagnostics);
+    if (!solid.roof && !is_stated_flat(attributes)) report_flat(own, "cannot be built over its outline", diagnostics);
   }
   solid.eaves_z = solid.roof ? ground.median_z + height.eaves_m : solid.top_z;
   return solid;

@@ -67,20 +67,30 @@ struct Solid {
     twice_area += twice.norm();
     six_volumes += twice.dot(middle_of(face.polygon.exterior) - anchor);
   }
-  /// The vectors of area cancel where faces close a solid; only there its volume does not depend on the anchor.
+  /// The vectors of area cancel where faces close a solid.
+  bool is_closed() const {
+    constexpr double rounding = 1e-3;
+    return twice_vector_area.norm() < rounding * twice_area;
+  }
+  /// Only of a closed solid the volume does not depend on the anchor.
   bool looks_inward() const {
-    constexpr double rounding = 1e-3, least_thickness = 1e-6;
-    return twice_vector_area.norm() < rounding * twice_area && six_volumes < -least_thickness * std::pow(twice_area, 1.5);
+    constexpr double least_thickness = 1e-6;
+    return is_closed() && six_volumes < -least_thickness * std::pow(twice_area, 1.5);
   }
 
   Eigen::Vector3d twice_vector_area = Eigen::Vector3d::Zero();
   double twice_area = 0, six_volumes = 0;
 };
 
-void turn_solids_outward(std::vector<ModelFace>& faces, const std::string& feature, Diagnostics& diagnostics) {
+/// By part.
+std::map<int, Solid> solids_of(const std::vector<ModelFace>& faces) {
   std::map<int, Solid> solids;
   for (const ModelFace& face : faces) solids[face.part].add(face, faces.front().polygon.exterior.front());
-  for (const auto& [part, solid] : solids) {
+  return solids;
+}
+
+void turn_solids_outward(std::vector<ModelFace>& faces, const std::string& feature, Diagnostics& diagnostics) {
+  for (const auto& [part, solid] : solids_of(faces)) {
     if (!solid.looks_inward()) continue;
     diagnostics.add(DiagnosticCode::polygon_wrong_orientation, feature, "a solid whose faces look inward");
     for (ModelFace& face : faces)
@@ -129,6 +139,15 @@ std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diag
   if (model.kind != ModelKind::terrain) turn_solids_outward(faces, model.id, diagnostics);
   for (ModelFace& face : faces) name_and_turn(face, model, diagnostics);
   return faces;
+}
+
+std::set<int> closed_parts(const std::vector<ModelFace>& faces) {
+  std::set<int> closed;
+  for (const auto& [part, solid] : solids_of(faces))
+    if (solid.is_closed()) closed.insert(part);
+  for (const ModelFace& face : faces)
+    if (face.surface_class == SurfaceClass::closure) closed.erase(face.part);
+  return closed;
 }
 
 bool can_be_seen(const ModelFace& face, ModelKind kind) {

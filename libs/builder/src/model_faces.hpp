@@ -1,4 +1,5 @@
 #pragma once
+#include <set>
 #include <vector>
 
 #include <priormap/core/diagnostics.hpp>
@@ -18,6 +19,9 @@ struct ModelFace {
 /// The faces of a model in metres. Defects are counted by val3dity's codes; polygons without area are left out. Solids whose
 /// faces look inward are turned over (307), then single roofs that look down. Faces that the file leaves unnamed are walls, roofs or ground surfaces by their slope.
 std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diagnostics);
+
+/// Parts whose faces enclose a space. One with a closure, which is not there, does not.
+std::set<int> closed_parts(const std::vector<ModelFace>& faces);
 
 /// False for what no beam from the street reaches: ground, floors, other undersides, and closures, which are not there. Of a bridge the deck and the
 /// underside are seen, from above and below.

@@ -74,13 +74,24 @@ bool northing_comes_first(const std::string& srs_name, const Crs& crs, const Eig
   return straight == turned ? is_urn_or_url(srs_name) : turned > straight;
 }
 
+/// The model's first point, easting first.
+Eigen::Vector3d place_of(const BuildingModel& model, const Crs& crs, const std::string& file) {
+  const Eigen::Vector3d place = first_point(model, file);
+  return northing_comes_first(model.srs_name, crs, place) ? swapped(place) : place;
+}
+
+/// For the choice of an operation, whose areas of use are countries.
+std::optional<LonLatArea> around(const std::optional<GeoPoint>& place) {
+  constexpr double margin_deg = 0.01;
+  if (!place) return std::nullopt;
+  return LonLatArea{place->lon_deg - margin_deg, place->lat_deg - margin_deg, place->lon_deg + margin_deg, place->lat_deg + margin_deg};
+}
+
 }  // namespace
 
 ModelFrames::ModelFrames(const PriorOptions& options, const BuildingModel& first, const std::string& file, const Events& events) : options_(options), events_(events) {
   InputCrs input = resolve_input_crs(options, declared_crs(first.srs_name, file, !options.source_crs.empty()), file, {});
-  Eigen::Vector3d place = first_point(first, file);
-  if (northing_comes_first(first.srs_name, input.crs, place)) place = swapped(place);
-  const std::optional<GeoPoint> middle = reach(input.crs.horizontal(), place);
+  const std::optional<GeoPoint> middle = reach(input.crs.horizontal(), place_of(first, input.crs, file));
   if (!middle) throw CrsError(file + ": its coordinates lie out of reach of " + input.crs.human_name() + "; name their CRS with --source-crs");
   prior_ = resolve_prior_crs(options, {input}, LonLatArea{middle->lon_deg, middle->lat_deg, middle->lon_deg, middle->lat_deg}, events);
   first_ = std::move(input);
@@ -91,7 +102,7 @@ ModelFrames::Frame& ModelFrames::frame_of(const BuildingModel& model, const std:
   const InputCrs input = resolve_input_crs(options_, declared_crs(model.srs_name, file, !options_.source_crs.empty()), file, events_);
   resolve_prior_crs(options_, {*first_, input}, std::nullopt, {});   // refuses heights that do not go together
   Frame frame{input.crs, std::nullopt, {input.crs.name(), input.assumed_vertical, {}}};
-  Transformer transformer(input.crs, *prior_);
+  Transformer transformer = transformer_to_prior(input.crs, *prior_, around(reach(input.crs.horizontal(), place_of(model, input.crs, file))), file);
   frame.source.operation = transformer.operation();
   if (!transformer.is_identity()) frame.to_prior = std::move(transformer);
   return frames_.emplace(model.srs_name, std::move(frame)).first->second;

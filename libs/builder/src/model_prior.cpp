@@ -13,6 +13,7 @@
 #include <priormap/builder/outline_prior.hpp>
 #include <priormap/builder/prior_crs.hpp>
 #include <priormap/core/error.hpp>
+#include <priormap/pointcloud/slope.hpp>
 #include <priormap/prior/prior_writer.hpp>
 #include <priormap/sources/citygml_reader.hpp>
 #include <priormap/sources/cityjson_reader.hpp>
@@ -20,13 +21,13 @@
 #include <priormap/tessellation/triangulate.hpp>
 
 #include "chunks.hpp"
+#include "face_index.hpp"
 #include "model_faces.hpp"
 #include "model_frame.hpp"
 #include "model_sight.hpp"
 #include "point_buffer.hpp"
 #include "report_text.hpp"
 #include "visible_points.hpp"
-#include "wall_index.hpp"
 
 namespace priormap {
 namespace {
@@ -61,7 +62,15 @@ std::size_t& count_of(ModelKind kind, ModelReport& report) {
   }
 }
 
-/// First pass: the CRS of the prior from the first building, and the walls of all.
+/// Of a terrain model only steps hide walls: what stands on the ground covers it, but the ground is wanted whole.
+bool may_be_hidden(const ModelFace& face, ModelKind kind) { return kind != ModelKind::terrain || is_wall(face.normal.z()); }
+
+std::vector<ModelFace> hiding_faces(std::vector<ModelFace> faces, ModelKind kind) {
+  std::erase_if(faces, [&](const ModelFace& face) { return !may_be_hidden(face, kind); });
+  return faces;
+}
+
+/// First pass: the CRS of the prior from the first building, and the faces of all.
 class Survey {
  public:
   Survey(const PriorOptions& prior_options, const ModelOptions& model_options, const Events& events)
@@ -70,6 +79,7 @@ class Survey {
   void read(const HashedFile& file) {
     read_models(file.path, reader_options(model_options_), [&](BuildingModel&& model) {
       if (model.polygons.empty()) return;
+      const std::uint32_t number = num_models_++;
       if (!frames_) frames_ = std::make_unique<ModelFrames>(prior_options_, model, file.path.string(), events_);
       file_frame_.try_emplace(file.path.string(), frames_->source(model, file.path.string()));
       // Under, behind and through bridges and plants much is seen.
@@ -77,21 +87,21 @@ class Survey {
       if (!model_options_.visible_faces_only() && !hides_views) return;
       frames_->to_prior(model, file.path.string());
       Diagnostics ignored;
-      const std::vector<ModelFace> faces = model_faces(model, ignored);
+      std::vector<ModelFace> faces = model_faces(model, ignored);
       if (hides_views) sight_.add(faces);
       if (!model_options_.visible_faces_only() || model.kind == ModelKind::vegetation) return;
-      for (const ModelFace& face : faces) {
-        if (face.surface_class != SurfaceClass::closure) walls_.add(face.polygon, face.normal);
-      }
+      faces_.add(number, hiding_faces(std::move(faces), model.kind));
     });
   }
 
+  /// Once, after the last `read`.
+  void finish() { faces_.finish(); }
   /// Once, after the last `read`. Nothing without --visible-from.
   std::optional<LineOfSight> line_of_sight() {
     return model_options_.sight.is_active() ? std::optional(sight_.finish(frames_->prior())) : std::nullopt;
   }
 
-  const WallIndex& walls() const { return walls_; }
+  const FaceIndex& faces() const { return faces_; }
   ModelFrames* frames() { return frames_.get(); }
   const ModelSourceFrame* frame_of(const HashedFile& file) const {
     const auto found = file_frame_.find(file.path.string());
@@ -104,19 +114,21 @@ class Survey {
   const Events& events_;
   std::unique_ptr<ModelFrames> frames_;
   std::map<std::string, ModelSourceFrame> file_frame_;
-  WallIndex walls_;
+  std::uint32_t num_models_ = 0;
+  FaceIndex faces_;
   ModelSight sight_;
 };
 
 /// One thread's way from a building in the prior's CRS to its points.
 class ModelSampler {
  public:
-  ModelSampler(const WallIndex& walls, const LineOfSight* sight, const Crs& prior, const PriorOptions& prior_options, const ModelOptions& model_options, PriorWriter& writer)
-      : walls_(walls), sight_(sight), bbox_(prior_options, prior), visible_only_(model_options.visible_faces_only()), model_sigma_m_(model_options.sigma_m),
+  ModelSampler(const FaceIndex& faces, const LineOfSight* sight, const Crs& prior, const PriorOptions& prior_options, const ModelOptions& model_options, PriorWriter& writer)
+      : faces_(faces), sight_(sight), bbox_(prior_options, prior), visible_only_(model_options.visible_faces_only()), model_sigma_m_(model_options.sigma_m),
         vegetation_sigma_m_(model_options.vegetation_sigma_m), writer_(writer),
         sampler_(prior_options.spacing_or(0.5)), buffer_(writer) {}
 
-  SightCounts sample(const BuildingModel& model, const std::string& source_id, std::uint16_t source, Diagnostics& diagnostics) {
+  /// @param number  of the model in the survey
+  SightCounts sample(const BuildingModel& model, std::uint32_t model_number, const std::string& source_id, std::uint16_t source, Diagnostics& diagnostics) {
     const std::vector<ModelFace> faces = model_faces(model, diagnostics);
     const bool is_terrain = model.kind == ModelKind::terrain, seen_as_a_whole = sight_ && !is_terrain;   // a terrain model may cover a city: face by face
     const double sigma_m = model.kind == ModelKind::vegetation ? vegetation_sigma_m_ : model_sigma_m_;
@@ -133,7 +145,7 @@ class ModelSampler {
       collected_.clear();
     };
     for (std::uint32_t number = 0; number < faces.size(); ++number) {
-      collect_points(faces[number], number, model.kind);
+      collect_points(faces[number], number, model.kind, model_number);
       if (!seen_as_a_whole) write_collected();
     }
     if (seen_as_a_whole) write_collected();
@@ -142,17 +154,17 @@ class ModelSampler {
   void flush() { buffer_.flush(); }
 
  private:
-  void collect_points(const ModelFace& face, std::uint32_t number, ModelKind kind) {
+  void collect_points(const ModelFace& face, std::uint32_t number, ModelKind kind, std::uint32_t model_number) {
     if (visible_only_ && !can_be_seen(face, kind)) return;
     points_.clear();
     normals_.clear();
     if (face.planar) {
       sampler_.sample(face.polygon, points_);
-      if (visible_only_) walls_.remove_shared(face.normal, points_);
       normals_.assign(points_.size(), face.normal);
     } else {
       sampler_.sample(triangulate(face.polygon), points_, normals_);
     }
+    if (visible_only_ && may_be_hidden(face, kind)) faces_.remove_hidden(model_number, face, points_, normals_);
     collected_.points.insert(collected_.points.end(), points_.begin(), points_.end());
     collected_.normals.insert(collected_.normals.end(), normals_.begin(), normals_.end());
     collected_.faces.resize(collected_.points.size(), number);
@@ -177,7 +189,7 @@ class ModelSampler {
     return feature;
   }
 
-  const WallIndex& walls_;
+  const FaceIndex& faces_;
   const LineOfSight* sight_;
   BboxFilter bbox_;
   bool visible_only_;
@@ -200,11 +212,13 @@ class Sampling {
     const auto finish_batch = [&] {
       std::vector<Diagnostics> diagnostics(batch_.size());
       std::vector<SightCounts> of_building(batch_.size());
+      const std::uint32_t first_number = num_models_;
+      num_models_ += static_cast<std::uint32_t>(batch_.size());
       for_each_chunk(
           batch_.size(), 16, threads_,
-          [&] { return std::make_unique<ModelSampler>(survey_.walls(), sight_, frames_.prior(), prior_options_, model_options_, writer_); },
+          [&] { return std::make_unique<ModelSampler>(survey_.faces(), sight_, frames_.prior(), prior_options_, model_options_, writer_); },
           [&](auto& sampler, std::size_t, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) of_building[i] = sampler->sample(batch_[i], source_id, source, diagnostics[i]);
+            for (std::size_t i = begin; i < end; ++i) of_building[i] = sampler->sample(batch_[i], first_number + static_cast<std::uint32_t>(i), source_id, source, diagnostics[i]);
             sampler->flush();
           });
       for (std::size_t i = 0; i < batch_.size(); ++i) {
@@ -237,6 +251,7 @@ class Sampling {
   const ModelOptions& model_options_;
   PriorWriter& writer_;
   int threads_;
+  std::uint32_t num_models_ = 0;   ///< sampled before the batch; the survey counted in the same order
   std::vector<BuildingModel> batch_;
 };
 
@@ -332,6 +347,7 @@ ModelReport build_model_prior(const std::vector<std::filesystem::path>& inputs, 
   const std::vector<HashedFile> files = distinct_files(inputs);
   Survey survey(prior_options, model_options, events);
   for (const HashedFile& file : files) survey.read(file);
+  survey.finish();
   if (!survey.frames()) throw FormatError(files.front().path, "holds no building with surfaces" + (model_options.lod > 0 ? " of LoD" + std::to_string(model_options.lod) : std::string()));
   const std::vector<HashedFile> with_models = files_with_models(files, survey, events);
   std::vector<PriorSource> sources;

@@ -1,11 +1,14 @@
 #include "outline_crs.hpp"
 
-#include <algorithm>
-#include <limits>
+#include <iomanip>
+#include <iterator>
+#include <set>
+#include <sstream>
 
 #include <priormap/builder/prior_crs.hpp>
 #include <priormap/core/error.hpp>
 
+#include "outline_groups.hpp"
 #include "raster_faults.hpp"
 
 namespace priormap {
@@ -39,61 +42,48 @@ InputCrs heights_of(const NamedRaster& raster, const InputCrs& outlines) {
   return {raster.crs.vertical() ? outlines.crs.horizontal().with_vertical(raster.crs) : raster.crs, "", raster.file};
 }
 
-/// Around places, by x as it is and by x counted eastward from 0: of longitudes that cross the antimeridian the second is narrower.
-struct PlaceBounds {
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-  Bounds2 as_they_are{infinity, infinity, -infinity, -infinity}, eastward = as_they_are;
-
-  void extend(const Eigen::Vector2d& p) {
-    const double x = p.x() < 0 ? p.x() + 360 : p.x();
-    extend(as_they_are, {p.x(), p.y(), p.x(), p.y()});
-    extend(eastward, {x, p.y(), x, p.y()});
-  }
-  void extend(const PlaceBounds& other) {
-    extend(as_they_are, other.as_they_are);
-    extend(eastward, other.eastward);
-  }
-  Bounds2 of(const Crs& crs) const {
-    const bool crosses = crs.is_geographic() && eastward.max_x - eastward.min_x < as_they_are.max_x - as_they_are.min_x;
-    return crosses ? eastward : as_they_are;
-  }
-
- private:
-  static void extend(Bounds2& a, const Bounds2& b) {
-    a = {std::min(a.min_x, b.min_x), std::min(a.min_y, b.min_y), std::max(a.max_x, b.max_x), std::max(a.max_y, b.max_y)};
-  }
+/// The groups that decide where the prior lies, and those far away from them.
+struct SortedGroups {
+  std::vector<OutlineGroup> main, strays;
 };
 
-/// Far larger than any building: a wrong digit, which says nothing of where the data lie.
-bool is_implausible(const Bounds2& b, const Crs& crs) {
-  constexpr double longest_m = 20'000, metres_per_degree = 111'320;
-  const double unit_m = crs.is_geographic() ? metres_per_degree : crs.horizontal_unit_m();
-  return std::max(b.max_x - b.min_x, b.max_y - b.min_y) * unit_m > longest_m;
+/// A group that holds nine tenths decides alone: what lies far off is a slip of somebody's hand, or elsewhere.
+SortedGroups sort_out(std::vector<OutlineGroup> groups) {
+  constexpr double most = 0.9;
+  std::size_t total = 0;
+  for (const OutlineGroup& group : groups) total += group.count;
+  const bool one_decides = groups.size() > 1 && static_cast<double>(groups.front().count) >= most * static_cast<double>(total);
+  if (!one_decides) return {std::move(groups), {}};
+  SortedGroups sorted{{}, {std::make_move_iterator(groups.begin() + 1), std::make_move_iterator(groups.end())}};
+  sorted.main.push_back(std::move(groups.front()));
+  return sorted;
 }
 
-/// Of the footprints of each file, in its own CRS; without extent for a file without any.
-std::vector<PlaceBounds> bounds_by_file(const OutlineInput& input, const std::vector<InputCrs>& outlines) {
-  std::vector<PlaceBounds> bounds(input.files.size());
-  for (const Footprint& footprint : input.footprints) {
-    PlaceBounds own;
-    for (const Ring2& ring : footprint.rings)
-      for (const Eigen::Vector2d& p : ring) own.extend(p);
-    const Crs& crs = outlines[footprint.file].crs;
-    if (!is_implausible(own.of(crs), crs)) bounds[footprint.file].extend(own);
-  }
-  return bounds;
-}
-
-std::optional<LonLatArea> lon_lat_area(const std::vector<PlaceBounds>& bounds, const std::vector<InputCrs>& outlines) {
+std::optional<LonLatArea> area_of(const std::vector<OutlineGroup>& groups, const std::vector<InputCrs>& outlines) {
   std::optional<LonLatArea> all;
-  for (std::size_t i = 0; i < bounds.size(); ++i) {
-    const Bounds2 own = bounds[i].of(outlines[i].crs);
-    if (own.empty()) continue;
-    const std::optional<LonLatArea> area = priormap::lon_lat_area(own, outlines[i].crs);
-    if (!area) throw CrsError(outlines[i].file + ": its coordinates lie outside the domain of " + outlines[i].crs.name() + "; name the right CRS with --source-crs");
-    all = all ? united(*all, *area) : *area;
+  for (const OutlineGroup& group : groups) {
+    const InputCrs& input = outlines[group.file];
+    if (!group.area) throw CrsError(input.file + ": its coordinates lie outside the domain of " + input.crs.name() + "; name the right CRS with --source-crs");
+    all = all ? united(*all, *group.area) : *group.area;
   }
   return all;
+}
+
+std::string text_of(const GeoPoint& place) {
+  return (std::ostringstream() << std::fixed << std::setprecision(3) << "longitude " << place.lon_deg << ", latitude " << place.lat_deg).str();
+}
+
+/// Of the strays those that the prior's CRS does not reach, or where it makes lengths wrong; says of all where they lie.
+std::vector<OutlineGroup> beyond_prior(const std::vector<OutlineGroup>& strays, const LonLatArea& main, const Crs& prior, const std::vector<InputCrs>& outlines, const Events& events) {
+  std::vector<OutlineGroup> beyond;
+  for (const OutlineGroup& stray : strays) {
+    const bool fits = stray.area && fits_lengths(prior, *stray.area);
+    const std::string others = stray.count > 1 ? " and " + std::to_string(stray.count - 1) + " more near it" : "";
+    events.warn(outlines[stray.file].file + ": " + stray.first + others + (stray.count > 1 ? " lie" : " lies") + (stray.area ? " at " + text_of(stray.area->middle()) : std::string(" nowhere on Earth")) +
+                ", far from the rest (" + text_of(main.middle()) + "); " + (fits ? "kept, --bbox leaves out what is not wanted" : "left out, " + prior.horizontal().human_name() + " is not made for there"));
+    if (!fits) beyond.push_back(stray);
+  }
+  return beyond;
 }
 
 std::optional<Transformer> constant_to_prior(const InputCrs& outlines, const Crs& prior) {
@@ -117,7 +107,8 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
   for (const InputCrs& outline : outlines) with_heights.push_back(terrain ? heights_of(*terrain, outline) : InputCrs{outline.crs, outline.assumed_vertical, outline.file, "--terrain"});
   if (surface) with_heights.push_back(heights_of(*surface, first));
 
-  const std::optional<LonLatArea> area = lon_lat_area(bounds_by_file(input, outlines), outlines);
+  const SortedGroups groups = sort_out(outline_groups(input, outlines));
+  const std::optional<LonLatArea> area = area_of(groups.main, outlines);
   const Crs prior = resolve_prior_crs(prior_options, with_heights, area, events);
   if (!ground_given) events.warn("the ground under the buildings is taken as 0 m; give --terrain or --ground-height");
 
@@ -125,10 +116,25 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
   if (terrain) terrain_heights = HeightRaster::open(terrain->file, terrain->override_crs, prior);
   if (surface) surface_heights = HeightRaster::open(surface->file, surface->override_crs, prior);
   const std::optional<double> constant_m = terrain ? outline_options.ground_height_m : std::optional(outline_options.ground_height_m.value_or(0));
+  std::set<OutlineGroup::Cell> left_out;
+  if (area && prior_options.bbox.empty())   // a box says what is wanted
+    for (const OutlineGroup& stray : beyond_prior(groups.strays, *area, prior, outlines, events)) left_out.insert(stray.cells.begin(), stray.cells.end());
   std::vector<Transformer> prior_from_outlines;
-  for (const InputCrs& outline : outlines) prior_from_outlines.emplace_back(outline.crs.horizontal(), prior.horizontal(), area);
+  for (const InputCrs& outline : outlines) prior_from_outlines.push_back(transformer_to_prior(outline.crs.horizontal(), prior.horizontal(), area, outline.file));
   return {std::move(prior_from_outlines), prior, area, first.assumed_vertical,
-          GroundModel(std::move(terrain_heights), constant_m, constant_to_prior(first, prior)), std::move(surface_heights)};
+          GroundModel(std::move(terrain_heights), constant_m, constant_to_prior(first, prior)), std::move(surface_heights), std::move(left_out)};
+}
+
+FootprintList without_strays(FootprintList footprints, const OutlineFrames& frames, Diagnostics& diagnostics) {
+  if (frames.left_out.empty()) return footprints;
+  FootprintList kept;
+  for (const Footprint& footprint : footprints) {
+    if (frames.left_out.contains(cell_of(footprint, frames.prior_from_outlines[footprint.file].source())))
+      diagnostics.add(DiagnosticCode::degenerate_geometry, footprint.id, "lies far from the rest, outside the domain of the prior's CRS; left out");
+    else
+      kept.push_back(footprint);
+  }
+  return kept;
 }
 
 }  // namespace priormap

@@ -1,6 +1,7 @@
 #include <priormap/builder/outline_prior.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <iomanip>
 #include <iterator>
 #include <sstream>
@@ -13,6 +14,7 @@
 #include <priormap/geodesy/image_bounds.hpp>
 #include <priormap/prior/prior_writer.hpp>
 
+#include "content_hash.hpp"
 #include "raster_faults.hpp"
 #include "outline_crs.hpp"
 #include "outline_stages.hpp"
@@ -127,9 +129,12 @@ OutlineCounts& OutlineCounts::operator+=(const OutlineCounts& other) {
 
 std::vector<HashedFile> distinct_files(const std::vector<std::filesystem::path>& files) {
   std::vector<HashedFile> hashed;
-  for (const std::filesystem::path& file : files) {
-    if (!std::filesystem::exists(file)) throw IoError(file, "no such file");
-    hashed.push_back({file, sha256_file(file)});
+  for (const std::filesystem::path& named : files) {
+    const std::filesystem::path file = named.has_filename() ? named : named.parent_path();   // "town.gdb/"
+    const bool is_gdals_own = file.string().starts_with("/vsi");   // inside an archive, such as /vsizip/town.zip/town.shp
+    if (!is_gdals_own && !std::filesystem::exists(file)) throw IoError(file, "no such file");
+    if (std::filesystem::is_directory(file) && file.extension() != ".gdb") throw IoError(file, "is a directory; name the files in it");
+    hashed.push_back({file, content_hash(file)});
   }
   std::ranges::sort(hashed, [](const HashedFile& a, const HashedFile& b) { return std::tie(a.sha256, a.path) < std::tie(b.sha256, b.path); });
   const auto repeated = std::ranges::unique(hashed, {}, &HashedFile::sha256);
@@ -149,7 +154,7 @@ OutlineReport build_outline_prior(OutlineInput input, const PriorOptions& prior_
   PriorWriter writer(output, manifest_of(frames, prior_options, sources, generator), overwrite);
 
   const std::vector<WrittenBuildings> written =
-      write_outlines(std::exchange(input.footprints, {}), frames, sources, prior_options, outline_options, writer, diagnostics, threads, events);
+      write_outlines(without_strays(std::exchange(input.footprints, {}), frames, diagnostics), frames, sources, prior_options, outline_options, writer, diagnostics, threads, events);
   warn_of_impossible_heights(frames, outline_options, events);
   WrittenBuildings all;
   for (std::size_t i = 0; i < sources.size(); ++i) {

@@ -12,7 +12,7 @@
 
 namespace priormap {
 
-/// Into the prior's CRS, rings in order.
+/// Into the prior's CRS, rings in order, each outline once (707).
 ProjectedFootprints project_footprints(const FootprintList& footprints, const std::vector<Transformer>& prior_from_outlines, int threads, Diagnostics& diagnostics);
 
 /// What is seen from --visible-from: buildings hide each other, one whose height is a guess only up to half of it. Nothing without that option.

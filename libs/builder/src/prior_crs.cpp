@@ -227,6 +227,19 @@ Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& 
   return asked;
 }
 
+Transformer transformer_to_prior(const Crs& input, const Crs& prior, const std::optional<LonLatArea>& area, const std::string& file) {
+  try {
+    return Transformer(input, prior, area);
+  } catch (const CrsError& error) {
+    throw CrsError(file + ": " + error.what() + "; else name with --crs a CRS that is made for where the data lie");
+  }
+}
+
+bool fits_lengths(const Crs& prior, const LonLatArea& area) {
+  const AreaDistortion over = distortion_over(prior, area);
+  return !over.at_data().is_too_much() && !over.at_corners.is_too_much();
+}
+
 std::optional<std::string> vertical_name(const Crs& prior) {
   if (!prior.has_vertical()) return std::nullopt;
   const auto vertical = prior.vertical();

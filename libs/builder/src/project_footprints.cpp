@@ -9,6 +9,7 @@
 
 #include "chunks.hpp"
 #include "outline_stages.hpp"
+#include "repeated_outlines.hpp"
 
 namespace priormap {
 namespace {
@@ -111,6 +112,7 @@ ProjectedFootprints project_footprints(const FootprintList& footprints, const st
         const std::lock_guard lock(mutex);
         diagnostics.merge(found);
       });
+  leave_out_repeated(projected, diagnostics);
   projected.sort();
   return projected;
 }

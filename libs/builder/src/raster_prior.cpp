@@ -15,7 +15,6 @@
 #include <priormap/builder/bbox_filter.hpp>
 #include <priormap/builder/prior_crs.hpp>
 #include <priormap/core/error.hpp>
-#include <priormap/core/hash.hpp>
 #include <priormap/core/parallel.hpp>
 #include <priormap/geodesy/image_bounds.hpp>
 #include <priormap/geodesy/option_crs.hpp>
@@ -23,6 +22,7 @@
 #include <priormap/sources/height_raster.hpp>
 #include <priormap/sources/raster_points.hpp>
 
+#include "content_hash.hpp"
 #include "raster_faults.hpp"
 #include "report_text.hpp"
 
@@ -43,14 +43,6 @@ struct RasterInput {
   RasterFacts facts;
   InputCrs crs;
 };
-
-/// Of the file's bytes; of its name where it is no plain file (a /vsi... path, a database).
-std::string content_hash(const fs::path& file) {
-  if (fs::is_regular_file(file)) return sha256_file(file);
-  Sha256 hash;
-  hash.update(file.string());
-  return hash.hex_digest();
-}
 
 bool overlap(const Bounds2& a, const Bounds2& b) { return a.min_x < b.max_x && b.min_x < a.max_x && a.min_y < b.max_y && b.min_y < a.max_y; }
 

@@ -73,5 +73,28 @@ TEST(BuildingHeight, WhatStandsOnPillarsStartsAboveTheGround) {
   EXPECT_EQ(building_height(attributes, 12, 0, options).top_m, 38) << "a surface below its bottom does not show it";
 }
 
+TEST(BuildingHeight, LevelsBelowTheWallsAreAsHighAsTheBuildingsOwn) {
+  BuildingAttributes tower = flat(60, 20);   // 3 m a storey
+  tower.min_level = 18;
+  EXPECT_DOUBLE_EQ(building_height(tower, {}, 0, options).bottom_m, 54);
+  tower.roof_shape = RoofShape::pyramidal;   // its storeys end where the roof begins
+  tower.roof_height_m = 10;
+  EXPECT_DOUBLE_EQ(building_height(tower, {}, 8, options).bottom_m, 45);
+
+  BuildingAttributes seen = flat({}, 20);
+  seen.min_level = 18;
+  const BuildingHeight by_surface = building_height(seen, 60, 0, options);
+  EXPECT_EQ(by_surface.rule, HeightRule::dsm);
+  EXPECT_DOUBLE_EQ(by_surface.bottom_m, 54);
+}
+
+TEST(BuildingHeight, WallsThatWouldStartAboveTheTopStartOnTheGround) {
+  BuildingAttributes attributes = flat(12, {});
+  attributes.min_level = 3;
+  const BuildingHeight height = building_height(attributes, {}, 0, options);
+  EXPECT_EQ(height.bottom_m, 0);
+  EXPECT_EQ(height.eaves_m, 12);
+}
+
 }  // namespace
 }  // namespace priormap

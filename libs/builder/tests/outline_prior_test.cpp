@@ -196,6 +196,37 @@ TEST_F(OutlinePrior, ARoofThatCannotBeBuiltIsFlatAndCounted) {
   for (const Eigen::Vector3d& p : points()) EXPECT_LE(p.z(), 12000);
 }
 
+TEST_F(OutlinePrior, ARoofWithoutHeightIsFlatAsStated) {
+  std::vector<Footprint> town{box("by height", 0, 0, 10, 10), box("by angle", 50, 0, 10, 10)};
+  for (Footprint& house : town) {
+    house.attributes.height_m = 6;
+    house.attributes.roof_shape = RoofShape::gabled;
+  }
+  town[0].attributes.roof_height_m = 0;
+  town[1].attributes.roof_angle_deg = 0;
+  EXPECT_EQ(build(town).diagnostics.total(), 0u);
+  for (const Eigen::Vector3d& p : points()) EXPECT_LE(p.z(), 6000);
+}
+
+TEST_F(OutlinePrior, AnOutlineGivenTwiceStandsOnce) {
+  Footprint house = box("house", 0, 0, 10, 6), again = house, raised = house;
+  again.id = "again";
+  std::ranges::rotate(again.rings[0], again.rings[0].begin() + 2);
+  std::ranges::reverse(again.rings[0]);
+  again.attributes.height_m = 6;
+  raised.id = "raised";   // stands on the others
+  raised.attributes.min_height_m = 20;
+  raised.attributes.height_m = 25;
+  build({again, raised}, "once");
+  for (const auto& [name, town] : {std::pair("in order", std::vector{house, again, raised}), {"turned round", std::vector{raised, again, house}}}) {
+    const OutlineReport report = build(town, name);
+    EXPECT_EQ(report.counts.outlines, 2u);
+    EXPECT_EQ(report.diagnostics.counts(), (std::map<DiagnosticCode, std::size_t>{{DiagnosticCode::repeated_outline, 1}}));
+    EXPECT_EQ(report.diagnostics.entries().front().feature, "house") << "what says its height stays";
+    EXPECT_EQ(points(name), points("once"));
+  }
+}
+
 TEST_F(OutlinePrior, WhatIsLargerThanAnyBuildingIsCountedAndLeftOut) {
   const OutlineReport report = build({box("house", 0, 0, 10, 10), box("continent", 0, 50, 1e6, 1e6), box("needle", 0, 20, 6000, 1)});
   EXPECT_EQ(report.counts.outlines, 1u);
@@ -372,6 +403,23 @@ TEST_F(OutlinePrior, NothingToBuildIsAnErrorAndLeavesNothing) {
   options_.bbox = {0, 0, 1, 1};
   EXPECT_THROW(build({box("a", 0, 0, 5, 5)}), FormatError);
   EXPECT_FALSE(fs::exists(folder_ / "prior"));
+}
+
+TEST_F(OutlinePrior, AFileGeodatabaseIsOneInputAndOtherFoldersAreNone) {
+  const auto geodatabase = [&](const std::string& name, const std::string& table) {
+    fs::create_directories(folder_ / name);
+    std::ofstream(folder_ / name / "a00000001.gdbtable") << table;
+    return folder_ / name;
+  };
+  const fs::path town = geodatabase("town.gdb", "houses"), copy = geodatabase("copy.gdb", "houses"), other = geodatabase("other.gdb", "huts");
+  EXPECT_EQ(distinct_files({town, copy, other}).size(), 2u);
+  const std::string hash = distinct_files({town})[0].sha256;
+  std::ofstream(town / "_gdb.host.lock") << "a reader was here";
+  const HashedFile with_slash = distinct_files({town / ""})[0];
+  EXPECT_EQ(with_slash.sha256, hash);
+  EXPECT_EQ(with_slash.path.filename(), "town.gdb");
+  EXPECT_THROW(distinct_files({folder_}), IoError);
+  EXPECT_EQ(distinct_files({"/vsizip/town.zip/town.shp"}).size(), 1u) << "GDAL finds it, or says that it does not";
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ void FeatureSpool::mark_used(std::span<const std::uint32_t> numbers) {
   }
 }
 
-FeatureSpool::Written FeatureSpool::write(const std::filesystem::path& file, const PriorManifest& prior, int threads) const {
+FeatureSpool::Written FeatureSpool::write(const std::filesystem::path& file, const PriorManifest& prior, const Bounds2& extent, int threads) const {
   std::vector<std::pair<std::string_view, std::uint32_t>> order;
   for (const auto& [name, number] : number_of_name_)
     if (items_[number].used) order.emplace_back(name, number);
@@ -104,7 +104,7 @@ FeatureSpool::Written FeatureSpool::write(const std::filesystem::path& file, con
   for (std::size_t i = 0; i < order.size(); ++i) written.index_of_number[order[i].second] = std::uint32_t(i);
   written.count = order.size();
 
-  const OutlineFrame frame = OutlineFrame::for_prior(prior);
+  const OutlineFrame frame = OutlineFrame::for_prior(prior, extent);
   written.crs = frame.file_crs();
   written.operation = frame.operation();
   OutputFile out(file);

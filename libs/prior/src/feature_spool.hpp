@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include <priormap/geodesy/tile_grid.hpp>
 #include <priormap/prior/feature.hpp>
 #include <priormap/prior/prior_manifest.hpp>
 
@@ -36,8 +37,8 @@ class FeatureSpool {
     std::string crs, operation;   ///< as PriorManifest's
     std::string sha256;
   };
-  /// Writes features.geojsonl. @param prior  its CRS and sources. @throws IoError
-  Written write(const std::filesystem::path& file, const PriorManifest& prior, int threads) const;
+  /// Writes features.geojsonl. @param prior  its CRS and sources. @param extent  in that CRS. @throws IoError
+  Written write(const std::filesystem::path& file, const PriorManifest& prior, const Bounds2& extent, int threads) const;
 
  private:
   struct Item {

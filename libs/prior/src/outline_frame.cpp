@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <priormap/core/error.hpp>
+#include <priormap/geodesy/lon_lat_area.hpp>
 
 #include "lattice.hpp"
 
@@ -12,12 +13,16 @@ namespace {
 
 constexpr const char* wgs84 = "EPSG:4326";
 
-/// The operation by which the first source that comes from WGS 84 came; empty where it is the one that PROJ ranks first anyway, or there is no such source.
-std::string particular_operation(const PriorManifest& prior) {
+/// The operation by which the first source that comes from WGS 84 came, else the one that PROJ ranks first for where the points lie; empty where that is the one that
+/// PROJ ranks first without knowing the place.
+std::string particular_operation(const PriorManifest& prior, const Bounds2& extent) {
+  const Crs lon_lat = Crs::parse(wgs84), crs = Crs::parse(prior.crs).horizontal();
+  const std::string first_ranked = Transformer(lon_lat, crs).operation().proj_string;
   const auto source = std::ranges::find(prior.sources, wgs84, &PriorSource::crs);
-  if (source == prior.sources.end() || source->operation.proj_string.empty()) return "";
-  const std::string& operation = source->operation.proj_string;
-  return operation == Transformer(Crs::parse(wgs84), Crs::parse(prior.crs).horizontal()).operation().proj_string ? "" : operation;
+  std::string operation = first_ranked;
+  if (source != prior.sources.end() && !source->operation.proj_string.empty()) operation = source->operation.proj_string;
+  else if (const std::optional<LonLatArea> area = extent.empty() ? std::nullopt : lon_lat_area(extent, crs)) operation = Transformer(lon_lat, crs, area).operation().proj_string;
+  return operation == first_ranked ? "" : operation;
 }
 
 }  // namespace
@@ -29,10 +34,10 @@ OutlineFrame::OutlineFrame(const std::string& prior_crs, const std::string& file
   else from_file_.emplace(Transformer::by_operation(file, prior, operation));
 }
 
-OutlineFrame OutlineFrame::for_prior(const PriorManifest& prior) {
+OutlineFrame OutlineFrame::for_prior(const PriorManifest& prior, const Bounds2& extent) {
   if (prior.crs.empty()) return {"", "", ""};
   try {
-    return {prior.crs, wgs84, particular_operation(prior)};
+    return {prior.crs, wgs84, particular_operation(prior, extent)};
   } catch (const CrsError&) {
     return {prior.crs, Crs::parse(prior.crs).geographic_base().name(), ""};
   }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <priormap/geodesy/tile_grid.hpp>
 #include <priormap/geodesy/transformer.hpp>
 #include <priormap/prior/feature.hpp>
 #include <priormap/prior/prior_manifest.hpp>
@@ -13,10 +14,11 @@ namespace priormap {
 /// One object per thread.
 class OutlineFrame {
  public:
-  /// For writing: WGS 84, as GeoJSON has it, by the operation that brought the first source from there, else the one that PROJ ranks first; where none is known,
-  /// the prior's own geographic system.
+  /// For writing: WGS 84, as GeoJSON has it, by the operation that brought the first source from there, else the one that PROJ ranks first for the extent; where none
+  /// is known, the prior's own geographic system.
   /// @param prior  its CRS and sources; without a CRS a local metric frame, whose coordinates stay as they are
-  static OutlineFrame for_prior(const PriorManifest& prior);
+  /// @param extent  of the prior, in its CRS
+  static OutlineFrame for_prior(const PriorManifest& prior, const Bounds2& extent);
   /// For reading: the system and operation that the manifest names.
   /// @param operation  from the file's CRS to the prior's; empty: the one that PROJ ranks first
   OutlineFrame(const std::string& prior_crs, const std::string& file_crs, const std::string& operation);

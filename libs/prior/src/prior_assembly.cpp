@@ -244,10 +244,20 @@ void PriorAssembly::close_tile(TileKey key, const TileFilter& filter) {
   if (!closed_.emplace(key, std::move(tile)).second) throw Error("points were added to a closed tile of the prior");
 }
 
+/// Of the tiles, all around their points.
+Bounds2 PriorAssembly::extent() const {
+  std::vector<TileKey> keys = tiles_.keys();
+  for (const auto& [key, tile] : closed_) keys.push_back(key);
+  Eigen::AlignedBox2d box;
+  for (const TileKey key : keys)
+    for (const int corner : {0, 1}) box.extend(1e-3 * Eigen::Vector2d(double(grid_.origin(key.x + corner)), double(grid_.origin(key.y + corner))));
+  return {box.min().x(), box.min().y(), box.max().x(), box.max().y()};
+}
+
 PriorManifest PriorAssembly::finish(int threads, const Events& events, const TileFilter& filter) {
   const std::filesystem::path& folder = directory_.temporary_path();
   manifest_.sources = ordered(std::move(manifest_.sources), source_index_);
-  const FeatureSpool::Written features = features_.write(folder / features_file_name, manifest_, threads);
+  const FeatureSpool::Written features = features_.write(folder / features_file_name, manifest_, extent(), threads);
   feature_index_ = features.index_of_number;
   manifest_.num_features = features.count;
   manifest_.features_crs = features.crs;

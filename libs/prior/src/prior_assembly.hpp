@@ -48,6 +48,7 @@ class PriorAssembly {
   TileResult write_tile(TileKey key, const TileFilter& filter);
   template <class Position>
   void add_each(const PointCloud& columns, const Position& position);
+  Bounds2 extent() const;
   void check_source(std::size_t largest) const;
   void renumber(std::vector<PointRecord>& points) const;
 

@@ -1,24 +1,26 @@
 #pragma once
-#include <zlib.h>
-
 #include <filesystem>
 #include <memory>
 #include <span>
 
 namespace priormap {
 
-/// Bytes of a plain or gzip-compressed file, in order.
+/// Bytes of a plain file, or of one compressed by gzip or bzip2 (whatever its name), in order.
 class ByteSource {
  public:
   /// @throws IoError
   explicit ByteSource(const std::filesystem::path& file);
-  /// Fills `buffer`; fewer bytes only at the end. @throws FormatError on a damaged gzip stream
+  ~ByteSource();
+  ByteSource(const ByteSource&) = delete;
+  ByteSource& operator=(const ByteSource&) = delete;
+  /// Fills `buffer`; fewer bytes only at the end. @throws FormatError on a damaged stream
   std::size_t read(std::span<char> buffer);
 
  private:
-  struct Close { void operator()(gzFile file) const { gzclose(file); } };
-  std::filesystem::path path_;
-  std::unique_ptr<gzFile_s, Close> file_;
+  struct Stream;
+  struct GzipOrPlain;
+  struct Bzip2;
+  std::unique_ptr<Stream> stream_;
 };
 
 }  // namespace priormap

@@ -1,16 +1,13 @@
-#include <expat.h>
-
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <memory>
 #include <unordered_set>
 
 #include <priormap/core/error.hpp>
 #include <priormap/sources/citygml_reader.hpp>
 
-#include "byte_source.hpp"
 #include "model_assembly.hpp"
+#include "xml_reader.hpp"
 
 namespace priormap {
 namespace {
@@ -18,11 +15,10 @@ namespace {
 constexpr std::size_t max_depth = 256;
 constexpr std::size_t max_vertices = 8'000'000;
 constexpr std::size_t max_text = std::size_t{64} << 20;
-constexpr std::size_t max_token = std::size_t{16} << 20;
 constexpr int max_passes = 4;
 
 enum class Tag : std::uint8_t {
-  other, building, bridge, vegetation, building_part, terrain, indoor, boundary, installation, lod_property, geometry_off, tin, polygon, ring, oriented_surface, coordinates,
+  other, building, bridge, vegetation, building_part, terrain, indoor, boundary, installation, lod_property, geometry_off, tin, solid, polygon, ring, oriented_surface, coordinates,
   implicit_geometry, matrix, reference_point, template_geometry, envelope,
 };
 
@@ -34,7 +30,7 @@ Tag tag_of(std::string_view name) {
       {"BridgeInstallation", Tag::installation}, {"BridgeConstructionElement", Tag::installation}, {"BridgeConstructiveElement", Tag::installation},
       {"Room", Tag::indoor}, {"BuildingRoom", Tag::indoor}, {"BuildingFurniture", Tag::indoor},
       {"IntBuildingInstallation", Tag::indoor}, {"InteriorWallSurface", Tag::indoor}, {"CeilingSurface", Tag::indoor},
-      {"FloorSurface", Tag::indoor}, {"BuildingInstallation", Tag::installation}, {"tin", Tag::tin},
+      {"FloorSurface", Tag::indoor}, {"BuildingInstallation", Tag::installation}, {"tin", Tag::tin}, {"Solid", Tag::solid},
       {"Polygon", Tag::polygon}, {"PolygonPatch", Tag::polygon}, {"Triangle", Tag::polygon}, {"Rectangle", Tag::polygon},
       {"exterior", Tag::ring}, {"interior", Tag::ring}, {"outerBoundaryIs", Tag::ring}, {"innerBoundaryIs", Tag::ring},
       {"OrientableSurface", Tag::oriented_surface}, {"posList", Tag::coordinates}, {"pos", Tag::coordinates},
@@ -89,41 +85,12 @@ bool parse_numbers(std::string_view text, std::vector<double>& values) {
 }
 
 /// One pass over a file. Calls `finished` at the end of each building, bridge, plant or TIN; with `everything`, of each city object, whatever its kind.
-class CityGmlPass {
+class CityGmlPass : public XmlReader {
  public:
   using Finished = std::function<void(BuildingModel&&, GeometryItems&&)>;
 
   CityGmlPass(const std::filesystem::path& file, const BuildingModelOptions& options, bool everything, GeometryItems& templates, Finished finished)
-      : file_(file), options_(options), everything_(everything), templates_(templates), finished_(std::move(finished)), frames_(max_depth + 1) {}
-
-  void run() {
-    const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), &XML_ParserFree);
-    parser_ = parser.get();
-    XML_SetUserData(parser_, this);
-    XML_SetElementHandler(
-        parser_, [](void* self, const char* name, const char** attributes) { static_cast<CityGmlPass*>(self)->start(name, attributes); },
-        [](void* self, const char*) { static_cast<CityGmlPass*>(self)->end(); });
-    XML_SetCharacterDataHandler(parser_, [](void* self, const char* text, int length) { static_cast<CityGmlPass*>(self)->characters(text, length); });
-    XML_SetEntityDeclHandler(parser_, [](void* self, const char*, int, const char*, int, const char*, const char*, const char*, const char*) {
-      static_cast<CityGmlPass*>(self)->stop("entity declarations are refused");
-    });
-
-    ByteSource bytes(file_);
-    constexpr int chunk = 1 << 18;
-    std::size_t fed = 0;
-    for (bool last = false; !last;) {
-      char* buffer = static_cast<char*>(XML_GetBuffer(parser_, chunk));
-      if (!buffer) throw FormatError(file_, "too large to parse");
-      const std::size_t n = bytes.read({buffer, chunk});
-      last = n < chunk;
-      fed += n;
-      if (XML_ParseBuffer(parser_, static_cast<int>(n), last) != XML_STATUS_OK) throw failure();
-      if (fed > max_token && static_cast<std::size_t>(std::max<XML_Index>(0, XML_GetCurrentByteIndex(parser_))) < fed - max_token) {
-        stop("a single tag of more than 16 MB");
-        throw failure();
-      }
-    }
-  }
+      : XmlReader(file), options_(options), everything_(everything), templates_(templates), finished_(std::move(finished)), frames_(max_depth + 1) {}
 
  private:
   struct Frame {
@@ -136,28 +103,7 @@ class CityGmlPass {
     std::string srs_name;
   };
 
-  FormatError failure() const {
-    const std::string cause = cause_.empty() ? fault() : cause_;
-    return FormatError(file_, "line " + std::to_string(XML_GetCurrentLineNumber(parser_)) + ": " + cause);
-  }
-  std::string fault() const {
-    const XML_Error code = XML_GetErrorCode(parser_);
-    const std::string words = XML_ErrorString(code);
-    switch (code) {
-      case XML_ERROR_NO_ELEMENTS:
-      case XML_ERROR_UNCLOSED_TOKEN:
-      case XML_ERROR_UNCLOSED_CDATA_SECTION:
-      case XML_ERROR_PARTIAL_CHAR: return "the file ends too early (" + words + "); fetch it again";
-      default: return words;
-    }
-  }
-  void stop(std::string cause) {
-    if (cause_.empty()) cause_ = std::move(cause);
-    XML_StopParser(parser_, XML_FALSE);
-  }
-
-  void start(const char* qualified_name, const char** attributes) {
-    if (!cause_.empty()) return;
+  void start(const char* qualified_name, const char** attributes) override {
     const std::string_view name = local_name(qualified_name);
     if (depth_ == 0 && name != "CityModel" && name != "FeatureCollection") return stop("the root element '" + std::string(qualified_name) + "' is no CityGML CityModel");
     if (depth_ == max_depth) return stop("nested deeper than " + std::to_string(max_depth) + " elements");
@@ -200,6 +146,7 @@ class CityGmlPass {
     geometry_on_ = everything_;
     num_vertices_ = 0;
     num_objects_ = 0;
+    num_solids_ = 0;
     feature_srs_.clear();
     polygon_srs_.clear();
     if (everything_) context_.lod = 10;
@@ -214,8 +161,13 @@ class CityGmlPass {
       case Tag::lod_property: context_.lod = 10 * (name[3] - '0'); geometry_on_ = indoors_ == 0; break;
       case Tag::tin: context_.lod = 10; context_.surface_class = SurfaceClass::terrain; geometry_on_ = true; break;
       case Tag::geometry_off: geometry_on_ = everything_; break;
+      case Tag::solid: context_.solid = ++num_solids_; break;
       case Tag::polygon: in_polygon_ = geometry_on_; polygon_ = ModelPolygon{}; break;
-      case Tag::ring: numbers_.clear(); numbers_good_ = true; break;
+      case Tag::ring:
+        numbers_.clear();
+        numbers_good_ = true;
+        if (name == "interior" && !in_polygon_) geometry_on_ = false;   // of a solid: a void
+        break;
       case Tag::oriented_surface: if (orientation && *orientation == '-') context_.flip = !context_.flip; break;
       case Tag::coordinates: case Tag::matrix: collecting_ = geometry_on_; text_.clear(); break;
       case Tag::implicit_geometry: matrix_ = Eigen::Affine3d::Identity(); reference_point_.setZero(); template_items_ = {0, 0}; break;
@@ -225,8 +177,7 @@ class CityGmlPass {
     }
   }
 
-  void end() {
-    if (!cause_.empty()) return;
+  void end() override {
     Frame& frame = frames_[depth_ - 1];
     if (feature_depth_ != 0) {
       leave(frame);
@@ -259,10 +210,10 @@ class CityGmlPass {
     }
   }
 
-  void characters(const char* text, int length) {
-    if (!collecting_ || !cause_.empty()) return;
-    if (text_.size() + static_cast<std::size_t>(length) > max_text) return stop("a coordinate list of more than 64 MB");
-    text_.append(text, static_cast<std::size_t>(length));
+  void characters(std::string_view text) override {
+    if (!collecting_) return;
+    if (text_.size() + text.size() > max_text) return stop("a coordinate list of more than 64 MB");
+    text_.append(text);
   }
 
   void end_coordinates(const Frame& frame) {
@@ -363,13 +314,10 @@ class CityGmlPass {
     finished_(std::move(model_), std::move(geometry_));
   }
 
-  const std::filesystem::path& file_;
   const BuildingModelOptions& options_;
   const bool everything_;
   GeometryItems& templates_;
   const Finished finished_;
-  XML_Parser parser_ = nullptr;
-  std::string cause_;
 
   std::vector<Frame> frames_;
   std::size_t depth_ = 0;
@@ -378,7 +326,7 @@ class CityGmlPass {
   bool geometry_on_ = false;
   int dimension_ = 3;
   int indoors_ = 0;
-  int num_objects_ = 0;
+  int num_objects_ = 0, num_solids_ = 0;
   std::size_t num_features_ = 0, num_vertices_ = 0, num_template_vertices_ = 0;
   std::string document_srs_, feature_srs_, polygon_srs_;
   BuildingModel model_;

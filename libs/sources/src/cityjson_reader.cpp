@@ -80,9 +80,17 @@ void read_vertices(const Document& document, const json& value, std::vector<Eige
   for (const json& v : value) vertices.push_back(vector3(document, v));
 }
 
+/// Minor versions add what can be left unread, major ones change what things mean.
+void require_known_version(const Document& document, const json& version) {
+  const std::string text = version.is_string() ? version.get<std::string>() : version.dump();
+  const std::string major = text.substr(0, text.find('.'));
+  if (major != "1" && major != "2") document.fail("is CityJSON of version \"" + text + "\", of which nothing is known; convert it to version 2.0, such as with cjio");
+}
+
 /// Members of the root (or of a CityJSONSeq header) but for its objects and vertices.
 void read_header(Document& document, const std::string& key, const json& value) {
   if (key == "type" && value != "CityJSON" && value != "CityJSONFeature") document.fail("'type' is not CityJSON");
+  if (key == "version") require_known_version(document, value);
   if (key == "transform" && value.is_object()) {
     document.scale = vector3(document, value.value("scale", json()));
     document.translate = vector3(document, value.value("translate", json()));
@@ -128,6 +136,7 @@ class GeometryReader {
     const json semantics = geometry.value("semantics", json::object());
     const json surfaces = semantics.is_object() ? semantics.value("surfaces", json::array()) : json::array();
     const json values = semantics.is_object() ? semantics.value("values", json()) : json();
+    context_.solid = 0;
     read_level(geometry.value("boundaries", json::array()), values, surfaces, levels, vertex);
   }
 
@@ -135,7 +144,9 @@ class GeometryReader {
   template <class Vertex>
   void read_level(const json& boundaries, const json& values, const json& surfaces, int levels, const Vertex& vertex) {
     if (!boundaries.is_array()) document_.fail("'boundaries' is not nested as its geometry type demands");
-    for (std::size_t i = 0; i < boundaries.size(); ++i) {
+    if (levels == 2) context_.solid = ++num_solids_;
+    const std::size_t seen_from_outside = levels == 2 ? std::min<std::size_t>(1, boundaries.size()) : boundaries.size();   // inner shells are voids
+    for (std::size_t i = 0; i < seen_from_outside; ++i) {
       const json& value = values.is_array() && i < values.size() ? values[i] : no_value_;
       if (levels > 1) {
         read_level(boundaries[i], value, surfaces, levels - 1, vertex);
@@ -187,15 +198,18 @@ class GeometryReader {
     T_model_template.pretranslate(document_.vertex(boundaries[0]));
     const json& shape = document_.templates[index.get<std::size_t>()];
     if (!shape.is_object()) document_.fail("a geometry template is no object");
+    const std::size_t first = items_.items.size();
     read_geometry(shape, [&](const json& i) -> Eigen::Vector3d {
       if (!i.is_number_unsigned() || i.get<std::size_t>() >= document_.template_vertices.size()) document_.fail("a template refers to a vertex that is not there");
-      return T_model_template * document_.template_vertices[i.get<std::size_t>()];
+      return document_.template_vertices[i.get<std::size_t>()];
     });
+    for (std::size_t i = first; i < items_.items.size(); ++i) place(items_.items[i].polygon.polygon, T_model_template);
   }
 
   const Document& document_;
   GeometryItems& items_;
   GeometryContext context_;
+  int num_solids_ = 0;
   const json no_value_;
 };
 
@@ -312,6 +326,16 @@ void read_single_document(Document& document, const BuildingModelOptions& option
   stream_json(document, [](const std::string&, const json&) {}, [&](const std::string& id, const json& object) { buildings.add(id, object); });
 }
 
+/// Whether the first line ends an object and the next begins one, which no single JSON value does.
+bool has_object_after_line(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  char last = 0;
+  for (char c; stream.get(c) && c != '\n';)
+    if (!is_blank(c)) last = c;
+  return last == '}' && (stream >> std::ws).peek() == '{';
+}
+
 json parse_line(const Document& document, const std::string& line, std::size_t number) {
   const json::parser_callback_t callback = [&](int depth, json::parse_event_t, json&) {
     if (depth > max_depth) document.fail("line " + std::to_string(number) + ": nested deeper than " + std::to_string(max_depth) + " levels");
@@ -350,7 +374,7 @@ void read_sequence(Document& document, const BuildingModelOptions& options, cons
 
 CityJsonLayout cityjson_layout(const std::filesystem::path& file) {
   const std::string extension = file.extension();
-  return extension == ".jsonl" || extension == ".ndjson" ? CityJsonLayout::sequence : CityJsonLayout::document;
+  return extension == ".jsonl" || extension == ".ndjson" || has_object_after_line(file) ? CityJsonLayout::sequence : CityJsonLayout::document;
 }
 
 void read_cityjson(const std::filesystem::path& file, CityJsonLayout layout, const BuildingModelOptions& options, const BuildingModelSink& sink) {

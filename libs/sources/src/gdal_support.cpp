@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <mutex>
 
+#include <priormap/core/error.hpp>
+
 namespace priormap {
 namespace {
 
@@ -30,6 +32,18 @@ void register_gdal() {
 void hold_in_cache(std::int64_t bytes) {
   bytes = std::min(bytes, most_gdal_cache_bytes);
   if (bytes > GDALGetCacheMax64() && !user_sets_cache()) GDALSetCacheMax64(bytes);
+}
+
+GDALDataset* open_gdal(const std::filesystem::path& file, unsigned int flags, const std::string& what) {
+  const std::string name = file.string();
+  if (auto* dataset = GDALDataset::Open(name.c_str(), flags | GDAL_OF_READONLY)) return dataset;
+  const std::string cause = QuietGdal::message();
+  if (file.extension() == ".zip")
+    if (auto* dataset = GDALDataset::Open(("/vsizip/" + name).c_str(), flags | GDAL_OF_READONLY)) return dataset;
+  std::error_code error;
+  const bool is_plain_path = !name.starts_with("/vsi") && name.find(':') == std::string::npos;
+  if (is_plain_path && !std::filesystem::exists(file, error)) throw IoError(file, "does not exist");
+  throw FormatError(file, "is no " + what + " that GDAL reads" + (cause.empty() ? "" : " (" + cause + ")"));
 }
 
 QuietGdal::QuietGdal() {

@@ -1,11 +1,13 @@
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include <priormap/geodesy/crs.hpp>
 
+class GDALDataset;
 class OGRSpatialReference;
 
 namespace priormap {
@@ -26,6 +28,11 @@ class QuietGdal {
   /// What GDAL last complained of, on one line.
   static std::string message();
 };
+
+/// Opens a file to read it, or what lies in a zip archive (town.zip, N43E007.hgt.zip), or a /vsi... path. Never null; whoever gets it closes it. Within a QuietGdal.
+/// @param flags  GDAL_OF_RASTER or GDAL_OF_VECTOR. @param what  "raster" or "vector file", for the message
+/// @throws IoError: no such file; FormatError: GDAL reads no such thing there
+GDALDataset* open_gdal(const std::filesystem::path& file, unsigned int flags, const std::string& what);
 
 /// nullopt for none, or a local engineering system.
 std::optional<Crs> crs_of(const OGRSpatialReference* reference);

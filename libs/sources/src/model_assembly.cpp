@@ -4,7 +4,6 @@
 #include <array>
 #include <map>
 #include <set>
-#include <unordered_set>
 
 namespace priormap {
 namespace {
@@ -20,6 +19,29 @@ std::string signature(const Polygon3& polygon) {
   std::sort(vertices.begin(), vertices.end());
   return {reinterpret_cast<const char*>(vertices.data()), vertices.size() * sizeof(vertices[0])};
 }
+
+/// Which polygons have been met, wherever they start and whichever way round they go.
+class SeenPolygons {
+ public:
+  /// False where the polygon repeats one of its own body (a boundary surface repeats its solid's, carelessly wound or not) or one of any body that looks the same way.
+  bool insert(const GeometryItem& item) {
+    const Eigen::Vector3d normal = newell_normal(item.polygon.polygon);
+    std::vector<Face>& faces = faces_[signature(item.polygon.polygon)];
+    for (const Face& face : faces) {
+      const bool same_solid = face.solid == item.context.solid || face.solid == 0 || item.context.solid == 0;
+      if ((face.object == item.context.object && same_solid) || !(face.normal.dot(normal) < 0)) return false;
+    }
+    faces.push_back({item.context.object, item.context.solid, normal});
+    return true;
+  }
+
+ private:
+  struct Face {
+    int object, solid;
+    Eigen::Vector3d normal;
+  };
+  std::unordered_map<std::string, std::vector<Face>> faces_;
+};
 
 void reverse(Polygon3& polygon) {
   std::reverse(polygon.exterior.begin(), polygon.exterior.end());
@@ -64,11 +86,18 @@ class Resolver {
   std::size_t steps_ = 0;
 };
 
-/// Replaces references by the polygons they bring in; a boundary surface that refers to a polygon of the solid names its class.
+/// How solids refer to a polygon that a boundary surface states.
+struct SolidSides {
+  bool as_stated = false, turned = false;
+};
+
+/// Replaces references by the polygons they bring in; a boundary surface that refers to a polygon of the solid names its class, a solid that refers to the polygon
+/// of a boundary surface says which way it looks.
 std::vector<GeometryItem> resolve_references(GeometryItems& geometry, const GeometryItems& shared, std::size_t& unresolved) {
   std::vector<GeometryItem> resolved;
   std::set<std::pair<const GeometryItem*, int>> brought_in;   // polygon, level; templates may come many times
   std::unordered_map<std::size_t, SurfaceClass> named;
+  std::unordered_map<std::size_t, SolidSides> sides;
   Resolver resolver(geometry, shared);
   for (const GeometryItem& reference : geometry.items) {
     if (reference.reference.empty()) continue;
@@ -77,6 +106,7 @@ std::vector<GeometryItem> resolve_references(GeometryItems& geometry, const Geom
       const GeometryItem& target = home.items[index];
       if (&home == &geometry && target.context.lod == context.lod && target.context.object == context.object) {
         if (context.thematic && !target.context.thematic) named.try_emplace(index, context.surface_class);
+        if (context.solid != 0 && target.context.thematic) (flip ? sides[index].turned : sides[index].as_stated) = true;
         return;
       }
       if (!reference.placement && !brought_in.insert({&target, context.lod}).second) return;
@@ -95,6 +125,7 @@ std::vector<GeometryItem> resolve_references(GeometryItems& geometry, const Geom
       item.context.thematic = true;
     }
     if (item.context.flip) reverse(item.polygon.polygon);
+    if (const auto side = sides.find(i); side != sides.end() && side->second.turned && !side->second.as_stated) reverse(item.polygon.polygon);
     resolved.push_back(std::move(item));
   }
   return resolved;
@@ -120,10 +151,9 @@ std::map<int, int> choose_lods(const std::vector<GeometryItem>& items, const Bui
 }  // namespace
 
 void place(Polygon3& polygon, const Eigen::Affine3d& T_model_template) {
-  for (Eigen::Vector3d& p : polygon.exterior) p = T_model_template * p;
-  for (Ring3& hole : polygon.holes) {
-    for (Eigen::Vector3d& p : hole) p = T_model_template * p;
-  }
+  for_each_ring(polygon, [&](Ring3& ring) { for (Eigen::Vector3d& p : ring) p = T_model_template * p; });
+  const bool mirrors = T_model_template.linear().determinant() < 0;
+  if (mirrors) reverse(polygon);
 }
 
 std::vector<std::string> missing_references(const GeometryItems& geometry) {
@@ -139,11 +169,11 @@ void assemble(GeometryItems geometry, const GeometryItems& shared, const Buildin
   const std::map<int, int> lods = choose_lods(items, options);
   std::stable_sort(items.begin(), items.end(),
                    [](const GeometryItem& a, const GeometryItem& b) { return a.context.thematic > b.context.thematic; });
-  std::unordered_set<std::string> seen;
+  SeenPolygons seen;
   for (GeometryItem& item : items) {
     const auto lod = lods.find(item.context.object);
     if (lod == lods.end() || lod->second != item.context.lod) continue;
-    if (!seen.insert(signature(item.polygon.polygon)).second) continue;
+    if (!seen.insert(item)) continue;
     item.polygon.surface_class = item.context.surface_class;
     item.polygon.part = item.context.object;
     model.lod = std::max(model.lod, item.context.lod / 10);

@@ -13,6 +13,7 @@ namespace priormap {
 /// Where a polygon or a reference stands inside a building.
 struct GeometryContext {
   int object = 0;              ///< 0: the building itself, 1...: its parts
+  int solid = 0;               ///< of the building, counted from 1; 0: in none
   int lod = 0;                 ///< ten times the level: 20 for "2", 22 for "2.2"
   SurfaceClass surface_class = SurfaceClass::unclassified;
   bool thematic = false;       ///< below a boundary surface, opening or installation
@@ -34,6 +35,7 @@ struct GeometryItems {
   std::unordered_map<std::string, Range> ranges;
 };
 
+/// A mirrored polygon goes the other way round, so that it looks outward still.
 void place(Polygon3& polygon, const Eigen::Affine3d& T_model_template);
 
 /// Ids referred to but not stated among the items.

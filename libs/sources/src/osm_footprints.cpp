@@ -16,6 +16,7 @@
 #include <priormap/core/error.hpp>
 #include <priormap/sources/osm_tags.hpp>
 
+#include "osm_input.hpp"
 #include "osm_rings.hpp"
 #include "osm_xml_notes.hpp"
 
@@ -115,6 +116,7 @@ struct OsmFile {
   fs::path path;
   std::uint16_t index;
   OsmXmlNotes notes;
+  OsmInput input;
   bool is_in_order = true;    ///< by id, each once
   bool holds_history = false; ///< several versions of an object, one after the other
 
@@ -131,7 +133,7 @@ void for_each_object(OsmFile& file, osmium::osm_entity_bits::type entities, int 
   std::int64_t last = std::numeric_limits<std::int64_t>::min();
   try {
     osmium::thread::Pool pool(threads, 4 * static_cast<std::size_t>(threads));
-    osmium::io::Reader reader(osmium::io::File(file.path.string()), entities, pool);
+    osmium::io::Reader reader(file.input.file(), entities, pool);
     while (const osmium::memory::Buffer buffer = reader.read())
       for (const Object& object : buffer.select<Object>()) {
         file.holds_history |= object.id() == last;
@@ -441,7 +443,7 @@ FootprintList read_osm_footprints(const std::vector<fs::path>& paths, int thread
   std::vector<OsmFile> files;
   for (const fs::path& path : paths) {
     if (!fs::exists(path)) throw IoError(path, "no such file");
-    files.push_back({path, static_cast<std::uint16_t>(files.size()), read_osm_xml_notes(path)});
+    files.push_back({path, static_cast<std::uint16_t>(files.size()), read_osm_xml_notes(path), OsmInput(path)});
     if (const std::string& remark = files.back().notes.remark; !remark.empty())
       events.warn(path.string() + ": Overpass broke off: \"" + remark + "\"; parts are missing, ask for it again with a longer [timeout:] or a smaller area");
   }

@@ -13,6 +13,8 @@
 #include <priormap/core/error.hpp>
 #include <priormap/sources/osm_tags.hpp>
 
+#include "osm_input.hpp"
+
 namespace priormap {
 namespace {
 
@@ -70,17 +72,17 @@ class StreetCollector : public osmium::handler::Handler {
 
 std::vector<OsmStreet> read_osm_streets(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) throw IoError(file, "does not exist");
+  const OsmInput input(file);
   StreetCollector collector;
   try {
     Locations locations;
     LocationsForWays locations_for_ways(locations);
     locations_for_ways.ignore_errors();   // streets cut at the extract's edge are left out below
     LocationsOfWays locations_of_ways(locations_for_ways);
-    const osmium::io::File input(file.string());
-    osmium::io::Reader nodes(input, osmium::osm_entity_bits::node);   // first, wherever the file has them
+    osmium::io::Reader nodes(input.file(), osmium::osm_entity_bits::node);   // first, wherever the file has them
     osmium::apply(nodes, locations_for_ways);
     nodes.close();
-    osmium::io::Reader ways(input, osmium::osm_entity_bits::way);
+    osmium::io::Reader ways(input.file(), osmium::osm_entity_bits::way);
     osmium::apply(ways, locations_of_ways, collector);
     ways.close();
   } catch (const std::exception& error) {

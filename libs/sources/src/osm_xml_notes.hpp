@@ -13,7 +13,7 @@ struct OsmXmlNotes {
   std::set<std::pair<std::string, std::int64_t>> deleted;   ///< "node", "way" or "relation", and id: deleted in JOSM and not yet uploaded (action="delete")
 };
 
-/// Nothing for files that are no XML, or compressed by bzip2. @throws IoError, FormatError
+/// Nothing for files that are no XML. @throws IoError, FormatError
 OsmXmlNotes read_osm_xml_notes(const std::filesystem::path& file);
 
 }  // namespace priormap

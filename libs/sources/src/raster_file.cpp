@@ -27,21 +27,8 @@ namespace {
 /// From below the shore of the Dead Sea, and below the deepest pits, to above Mount Everest; above a geoid or an ellipsoid.
 constexpr double lowest_on_earth_m = -500, highest_on_earth_m = 9000;
 
-std::shared_ptr<GDALDataset> open_dataset(const std::string& name) {
-  auto* dataset = GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY);
-  return {dataset, [](GDALDataset* d) { GDALClose(d); }};
-}
-
 std::shared_ptr<GDALDataset> open_raster(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  if (auto dataset = open_dataset(name)) return dataset;
-  std::string cause = QuietGdal::message();
-  if (file.extension() == ".zip")
-    if (auto dataset = open_dataset("/vsizip/" + name)) return dataset;
-  std::error_code error;
-  const bool is_plain_path = !name.starts_with("/vsi") && name.find(':') == std::string::npos;
-  if (is_plain_path && !std::filesystem::exists(file, error)) throw IoError(file, "does not exist");
-  throw FormatError(file, "is no raster that GDAL reads" + (cause.empty() ? "" : " (" + cause + ")"));
+  return {open_gdal(file, GDAL_OF_RASTER, "raster"), [](GDALDataset* d) { GDALClose(d); }};
 }
 
 /// Orthophotos lie beside surface models under much the same names, and some maps hold heights as colours.

@@ -24,6 +24,7 @@ std::string square(const std::string& id, double z, double size = 1) {
          " " + h + " 0 " + a + " " + h + " 0 0 " + h + "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>";
 }
 std::string member(const std::string& geometry) { return "<gml:surfaceMember>" + geometry + "</gml:surfaceMember>"; }
+std::string turned(const std::string& geometry) { return "<gml:OrientableSurface orientation='-'><gml:baseSurface>" + geometry + "</gml:baseSurface></gml:OrientableSurface>"; }
 std::string link(const std::string& id) { return "<gml:surfaceMember xlink:href='#" + id + "'/>"; }
 std::string surface(const std::string& name, const std::string& geometry, int lod = 2) {
   const std::string property = "bldg:lod" + std::to_string(lod) + "MultiSurface";
@@ -53,6 +54,20 @@ TEST(CityGml, APolygonThatSolidAndWallShareCountsOnceAsWall) {
     EXPECT_EQ(models[0].srs_name, "EPSG:25832");
     EXPECT_DOUBLE_EQ(polygon_area(models[0].polygons[0].polygon), 1.0);
   }
+}
+
+TEST(CityGml, APartyWallIsAFaceOfEachBodyThatItParts) {
+  const std::string toward = member(square("", 0)), away = member(turned(square("", 0)));
+  const auto part = [](const std::string& content) { return "<bldg:consistsOfBuildingPart><bldg:BuildingPart>" + content + "</bldg:BuildingPart></bldg:consistsOfBuildingPart>"; };
+  const auto body = [](const std::string& geometry) {
+    return "<gml:solidMember><gml:Solid><gml:exterior><gml:CompositeSurface>" + geometry + "</gml:CompositeSurface></gml:exterior></gml:Solid></gml:solidMember>";
+  };
+  const std::string bodies = "<bldg:lod2Solid><gml:CompositeSolid>" + body(toward) + body(away) + "</gml:CompositeSolid></bldg:lod2Solid>";
+  for (const std::string& content : {part(solid(toward)) + part(solid(away)), part(surface("WallSurface", toward)) + part(surface("WallSurface", away)), bodies})
+    EXPECT_EQ(read(document(building(content)))[0].polygons.size(), 2u) << content;
+  for (const std::string& content : {part(solid(toward)) + part(solid(toward)),                    // stated again by another part
+                                     part(solid(toward) + surface("WallSurface", away))})          // the same body, carelessly wound
+    EXPECT_EQ(read(document(building(content)))[0].polygons.size(), 1u) << content;
 }
 
 TEST(CityGml, EveryPartAndSurfaceMayStateItsEnvelopeAndIsStillOfItsBuilding) {
@@ -124,11 +139,42 @@ TEST(CityGml, ReferencesReachOtherBuildingsAndEndInCirclesOrNowhere) {
 }
 
 TEST(CityGml, AnOrientedSurfaceTurnsItsPolygonOver) {
-  const std::string turned = "<gml:surfaceMember><gml:OrientableSurface orientation='-'><gml:baseSurface>" + square("", 0) +
-                             "</gml:baseSurface></gml:OrientableSurface></gml:surfaceMember>";
-  const auto models = read(document(building(solid(turned))));
+  const auto models = read(document(building(solid(member(turned(square("", 0)))))));
   const Ring3& ring = models[0].polygons[0].polygon.exterior;
   EXPECT_LT((ring[1] - ring[0]).cross(ring[2] - ring[0]).z(), 0);
+}
+
+TEST(CityGml, ASolidSaysWhichWayItsBoundarySurfaceLooks) {
+  const auto looks_up = [](const std::string& content) {
+    const auto models = read(document(building(content)));
+    EXPECT_EQ(models[0].polygons.size(), 1u);
+    return newell_normal(models[0].polygons[0].polygon).z() > 0;
+  };
+  const std::string upward = surface("RoofSurface", member(square("p", 0))), downward = surface("RoofSurface", member(turned(square("p", 0))));
+  const std::string turned_link = member("<gml:OrientableSurface orientation='-'><gml:baseSurface xlink:href='#p'/></gml:OrientableSurface>");
+  EXPECT_TRUE(looks_up(upward + solid(link("p"))));
+  EXPECT_FALSE(looks_up(upward + solid(turned_link)));
+  EXPECT_FALSE(looks_up(solid(turned_link) + upward));
+  EXPECT_FALSE(looks_up(downward + solid(link("p"))));
+}
+
+TEST(CityGml, TheVoidInsideASolidIsNotSeen) {
+  const std::string hollow = "<bldg:lod2Solid><gml:Solid><gml:exterior><gml:CompositeSurface>" + member(square("", 0, 4)) + "</gml:CompositeSurface></gml:exterior>"
+                             "<gml:interior><gml:CompositeSurface>" + member(square("", 1)) + "</gml:CompositeSurface></gml:interior></gml:Solid></bldg:lod2Solid>";
+  const auto models = read(document(building(hollow)));
+  ASSERT_EQ(models[0].polygons.size(), 1u);
+  EXPECT_DOUBLE_EQ(polygon_area(models[0].polygons[0].polygon), 16);
+}
+
+TEST(CityGml, AMirroredTemplateLooksOutwardStill) {
+  const std::string installation =
+      "<bldg:outerBuildingInstallation><bldg:BuildingInstallation><bldg:lod3ImplicitRepresentation><core:ImplicitGeometry>"
+      "<core:transformationMatrix>-1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</core:transformationMatrix><core:relativeGMLGeometry><gml:MultiSurface>" + member(square("", 0)) +
+      "</gml:MultiSurface></core:relativeGMLGeometry></core:ImplicitGeometry></bldg:lod3ImplicitRepresentation></bldg:BuildingInstallation></bldg:outerBuildingInstallation>";
+  const auto models = read(document(building(installation)));
+  ASSERT_EQ(models[0].polygons.size(), 1u);
+  EXPECT_GT(newell_normal(models[0].polygons[0].polygon).z(), 0);   // the lid of a box is its lid when left and right are swapped
+  EXPECT_DOUBLE_EQ(models[0].polygons[0].polygon.exterior[1].x(), -1);
 }
 
 TEST(CityGml, ImplicitGeometryIsPlacedByMatrixAndReferencePointAndSharedById) {
@@ -236,6 +282,37 @@ TEST(CityGml, GzipIsReadAndDamageIsNamedByLine) {
   std::string deep = "<CityModel>";
   for (int i = 0; i < 5000; ++i) deep += "<a>";
   EXPECT_NE(message(deep).find("nested deeper"), std::string::npos);
+}
+
+TEST(CityGml, EncodingsOfOneByteACharacterAreRead) {
+  const auto id_in = [](const std::string& encoding, const std::string& id) {
+    std::string text = document(building(surface("WallSurface", member(square("", 0))), id));
+    const std::string plain = "<?xml version='1.0'?>";
+    text.replace(0, plain.size(), "<?xml version='1.0' encoding='" + encoding + "'?>");
+    const auto models = read(text);
+    return models.size() == 1 ? models[0].id : "none";
+  };
+  for (const std::string encoding : {"windows-1252", "Windows-1252", "CP1252"}) EXPECT_EQ(id_in(encoding, "Stra\xdf" "e_\x80"), "Stra\u00dfe_\u20ac") << encoding;
+  EXPECT_EQ(id_in("ISO-8859-15", "caf\xe9_\xa4"), "caf\u00e9_\u20ac");
+  EXPECT_EQ(id_in("ISO-8859-1", "caf\xe9"), "caf\u00e9") << "expat's own";
+  EXPECT_EQ(id_in("windows-1250", "\xe8\xe1st"), "\u010d\u00e1st");
+  EXPECT_EQ(id_in("KOI8-R", "\xc4\xcf\xcd"), "\u0434\u043e\u043c");
+}
+
+TEST(CityGml, OtherEncodingsAreNamedWithTheRemedy) {
+  for (const std::string encoding : {"GBK", "Shift_JIS", "UTF-7", "ISO-2022-JP", "EBCDIC-US", "no-such"}) {
+    std::string text = document(building(""));
+    text.replace(0, text.find("?>"), "<?xml version='1.0' encoding='" + encoding + "'");
+    try {
+      read(text);
+      ADD_FAILURE() << encoding << " was read";
+    } catch (const FormatError& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find("'" + encoding + "'"), std::string::npos) << message;
+      EXPECT_NE(message.find("iconv -f " + encoding + " -t UTF-8"), std::string::npos) << message;
+      EXPECT_EQ(message.find('\n'), std::string::npos);
+    }
+  }
 }
 
 }  // namespace

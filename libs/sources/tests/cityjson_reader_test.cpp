@@ -88,6 +88,30 @@ TEST(CityJson, EveryVersionsWayToNameCrsAndLevelIsRead) {
   }
 }
 
+TEST(CityJson, APartyWallIsAFaceOfEachSolidThatItParts) {
+  const auto wall_of = [](const std::string& type, const std::string& boundaries) {
+    return read("{" + head + "," + vertices + R"(,"CityObjects":{"b":{"type":"Building","geometry":[{"type":")" + type + R"(","lod":"2","boundaries":)" + boundaries + "}]}}}")[0].polygons.size();
+  };
+  EXPECT_EQ(wall_of("CompositeSolid", "[[[[[0,1,2]]]],[[[[2,1,0]]]]]"), 2u);
+  EXPECT_EQ(wall_of("Solid", "[[[[0,1,2]],[[2,1,0]]]]"), 1u);
+}
+
+TEST(CityJson, TheVoidInsideASolidIsNotSeen) {
+  const auto models = read("{" + head + "," + vertices + R"(,"CityObjects":{"b":{"type":"Building","geometry":[{"type":"Solid","lod":"2","boundaries":[[[[0,1,2]]],[[[0,1,4]]]]}]}}})");
+  ASSERT_EQ(models[0].polygons.size(), 1u);
+  EXPECT_DOUBLE_EQ(models[0].polygons[0].polygon.exterior[2].z(), 100);
+}
+
+TEST(CityJson, AMirroredTemplateLooksOutwardStill) {
+  const auto looks_up = [](const std::string& matrix) {
+    return newell_normal(read("{" + head + "," + vertices + R"(,"geometry-templates":{"templates":[{"type":"MultiSurface","lod":"3","boundaries":[[[0,1,2]]]}],
+      "vertices-templates":[[0,0,0],[1,0,0],[0,1,0]]},"CityObjects":{"b":{"type":"Building","geometry":[{"type":"GeometryInstance","template":0,"boundaries":[1],
+      "transformationMatrix":)" + matrix + "}]}}}")[0].polygons[0].polygon).z() > 0;
+  };
+  EXPECT_TRUE(looks_up("[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]"));
+  EXPECT_TRUE(looks_up("[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]"));
+}
+
 TEST(CityJson, TemplatesArePlacedAndTinReliefIsTerrain) {
   const std::string text = "{" + head + "," + vertices + R"(,"geometry-templates":{"templates":[{"type":"MultiSurface","lod":"3","boundaries":[[[0,1,2]]]}],
     "vertices-templates":[[0,0,0],[1,0,0],[0,1,0]]},"CityObjects":{
@@ -107,9 +131,25 @@ TEST(CityJson, ASequenceGivesEachFeatureItsOwnVertices) {
     "geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]]]}]}}})";
   std::string line = feature;
   std::erase(line, '\n');
-  const auto models = read(header + "\n" + line + "\n" + line + "\n", {}, ".city.jsonl");
-  ASSERT_EQ(models.size(), 2u);
-  EXPECT_EQ(models[1].polygons[0].polygon.exterior[0], Eigen::Vector3d(10, 20, 30));
+  for (const std::string extension : {".city.jsonl", ".json"}) {   // by name or by content
+    const auto models = read(header + "\n" + line + "\n" + line + "\n", {}, extension);
+    ASSERT_EQ(models.size(), 2u);
+    EXPECT_EQ(models[1].polygons[0].polygon.exterior[0], Eigen::Vector3d(10, 20, 30));
+  }
+}
+
+TEST(CityJson, UnknownMinorVersionsAreReadAndUnknownMajorOnesRefused) {
+  const auto message = [](const std::string& version) -> std::string {
+    try {
+      read(R"({"type":"CityJSON","version":)" + version + "," + vertices + R"(,"CityObjects":{"b":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]]]}]}}})");
+      return "";
+    } catch (const FormatError& error) {
+      return error.what();
+    }
+  };
+  for (const std::string version : {R"("1.0")", R"("1.0.3")", R"("1.9")", R"("2.0")", R"("2.7")", "2"}) EXPECT_EQ(message(version), "") << version;
+  for (const std::string version : {R"("9.0")", R"("0.9")", R"("20.1")", R"("3.0")", "null"}) EXPECT_NE(message(version).find("version"), std::string::npos) << version;
+  EXPECT_NE(message(R"("9.0")").find("\"9.0\""), std::string::npos);
 }
 
 TEST(CityJson, BadInputIsRefusedWithItsCause) {

@@ -1,3 +1,4 @@
+#include <cpl_conv.h>
 #include <gdal_priv.h>
 #include <gdal_utils.h>
 #include <gtest/gtest.h>
@@ -37,6 +38,15 @@ class OgrFootprints : public testing::Test {
     return {{list.begin(), list.end()}, crs};
   }
 
+  static void write_shapefile(const fs::path& from, const fs::path& to) {
+    GDALAllRegister();
+    GDALDatasetH source = GDALOpenEx(from.c_str(), GDAL_OF_VECTOR, nullptr, nullptr, nullptr);
+    GDALVectorTranslateOptions* options = GDALVectorTranslateOptionsNew(nullptr, nullptr);
+    GDALClose(GDALVectorTranslate(to.c_str(), nullptr, 1, &source, options, nullptr));
+    GDALVectorTranslateOptionsFree(options);
+    GDALClose(source);
+  }
+
   fs::path folder_;
   Diagnostics diagnostics_;
 };
@@ -60,6 +70,28 @@ TEST_F(OgrFootprints, PolygonsWithHeightsAndLevels) {
   EXPECT_FALSE(layers.footprints[1].attributes.levels);
   EXPECT_EQ(diagnostics_.counts().at(DiagnosticCode::unusable_height), 1u) << "no storeys at all is no count of them";
   EXPECT_EQ(read(file, {"", "", "", "key"}).footprints[0].id, "town/A7");
+}
+
+/// As most offices hand them out.
+TEST_F(OgrFootprints, AShapefileMayLieInAZipArchive) {
+  const fs::path zip = folder_ / "town.zip";
+  fs::create_directories(folder_ / "shapes");
+  write_shapefile(write_features(feature(R"("h":12.5)", square)), folder_ / "shapes/town.shp");
+  void* archive = CPLCreateZip(zip.c_str(), nullptr);
+  for (const char* extension : {".shp", ".shx", ".dbf", ".prj"}) {
+    std::ifstream stream(folder_ / "shapes" / (std::string("town") + extension), std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+    CPLCreateFileInZip(archive, (std::string("town") + extension).c_str(), nullptr);
+    CPLWriteFileInZip(archive, bytes.data(), static_cast<int>(bytes.size()));
+    CPLCloseFileInZip(archive);
+  }
+  CPLCloseZip(archive);
+  for (const fs::path& file : {zip, fs::path("/vsizip/" + zip.string()), fs::path("/vsizip/" + zip.string() + "/town.shp")}) {
+    const Layers layers = read(file, {"", "h", "", ""});
+    ASSERT_EQ(layers.footprints.size(), 1u) << file;
+    EXPECT_EQ(layers.footprints[0].attributes.height_m, 12.5);
+    EXPECT_TRUE(layers.crs);
+  }
 }
 
 TEST_F(OgrFootprints, HeightsAsTextCarryTheirUnits) {

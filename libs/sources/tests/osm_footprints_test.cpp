@@ -1,10 +1,14 @@
+#include <bzlib.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <fstream>
+#include <functional>
 #include <tuple>
 
 #include <priormap/core/error.hpp>
 #include <priormap/sources/osm_footprints.hpp>
+#include <priormap/sources/osm_streets.hpp>
 #include <priormap/tessellation/normalize.hpp>
 
 namespace priormap {
@@ -45,6 +49,13 @@ class OsmText {
   static std::string file_of(const std::string& objects) { return "<?xml version='1.0' encoding='UTF-8'?>\n<osm version='0.6'>\n" + objects + "</osm>\n"; }
   std::string ways_, relations_;
 };
+
+std::string bzip2(const std::string& text) {
+  std::string packed(text.size() + 1000, ' ');
+  auto size = static_cast<unsigned>(packed.size());
+  EXPECT_EQ(BZ2_bzBuffToBuffCompress(packed.data(), &size, const_cast<char*>(text.data()), static_cast<unsigned>(text.size()), 9, 0, 0), BZ_OK);
+  return packed.substr(0, size);
+}
 
 class OsmFootprints : public testing::Test {
  protected:
@@ -291,6 +302,68 @@ TEST_F(OsmFootprints, ARemarkOfOverpassAndHistoryAreWarnedOf) {
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_NE(warnings[0].find("b.osm: Overpass broke off: \"runtime error: Query timed out\""), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[1].find("several versions"), std::string::npos) << warnings[1];
+}
+
+TEST_F(OsmFootprints, CompressedFilesTellOfRemarksAndDeletionsToo) {
+  std::vector<std::string> warnings;
+  Events events;
+  events.warning = [&](const std::string& text) { warnings.push_back(text); };
+  // Attributes in any order and on any line, a remark of several lines with an entity, and what looks like a deletion inside of a value.
+  const std::string text = osm(corners + house(1, "5", "\n action=\"delete\"\n visible='true'") + "<remark>\nruntime error:\n&quot;timed out&quot;</remark>");
+  const std::string harmless = osm(corners + house(1, "5", "", building + OsmText::tag("note", "&lt;way id=&apos;9&apos; action=&apos;delete&apos;>&lt;remark>none")));
+  const fs::path zipped = folder_ / "town.osm.gz";
+  {
+    const auto file = gzopen(zipped.c_str(), "wb");
+    gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
+    gzclose(file);
+  }
+  for (const fs::path& file : {write("town.osm", text), write("town.osm.bz2", bzip2(text)), zipped}) {
+    warnings.clear();
+    EXPECT_TRUE(read_osm_footprints({file}, 2, diagnostics_, events).empty()) << file;
+    ASSERT_EQ(warnings.size(), 1u) << file;
+    EXPECT_NE(warnings[0].find("runtime error: \"timed out\""), std::string::npos) << warnings[0];
+  }
+  warnings.clear();
+  EXPECT_EQ(read_osm_footprints({write("harmless.osm.bz2", bzip2(harmless))}, 2, diagnostics_, events).size(), 1u);
+  EXPECT_TRUE(warnings.empty());
+}
+
+TEST_F(OsmFootprints, DamagedCompressionIsNamed) {
+  const std::string packed = bzip2(osm(corners + house(1, "5")));
+  std::string odd = packed;
+  odd[odd.size() / 3] ^= 0x55;
+  for (const auto& [text, cause] : {std::pair(packed.substr(0, packed.size() - 9), "cut short"), {odd, "damaged"}, {packed + "tail", "damaged"}}) {
+    try {
+      read_osm_footprints({write("town.osm.bz2", text)}, 1, diagnostics_);
+      ADD_FAILURE() << cause << " is not noticed";
+    } catch (const FormatError& error) {
+      EXPECT_NE(std::string(error.what()).find(cause), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(OsmFootprints, EncodingsOfOneByteACharacterAreRead) {
+  const std::string declared = "<?xml version='1.0' encoding='windows-1252'?>", undeclared = "<?xml version='1.0'?>";
+  std::string text = osm(corners + house(1, "5", "", building + OsmText::tag("name", "Caf\xe9 \x80")) + "<way id='10' version='1'><nd ref='1'/><nd ref='3'/>" +
+                         OsmText::tag("highway", "residential") + OsmText::tag("name", "Stra\xdf" "e") + "</way>");
+  text.replace(0, undeclared.size(), declared);
+  for (const fs::path& file : {write("town.osm", text), write("town.osm.bz2", bzip2(text))}) {
+    EXPECT_EQ(read_osm_footprints({file}, 2, diagnostics_).size(), 1u) << file;
+    const auto streets = read_osm_streets(file);
+    ASSERT_EQ(streets.size(), 1u) << file;
+    EXPECT_EQ(streets[0].name, "Stra\u00dfe");
+  }
+  text.replace(0, declared.size(), "<?xml version='1.0' encoding='Shift_JIS'?>");
+  const fs::path file = write("odd.osm", text);
+  for (const std::function<void()>& read : {std::function<void()>([&] { read_osm_footprints({file}, 2, diagnostics_); }), {[&] { read_osm_streets(file); }}}) {
+    try {
+      read();
+      ADD_FAILURE() << "read";
+    } catch (const FormatError& error) {
+      EXPECT_NE(std::string(error.what()).find("'Shift_JIS'"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("iconv"), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST_F(OsmFootprints, WaysMaySayWhereTheirNodesLie) {

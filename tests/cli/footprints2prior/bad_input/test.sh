@@ -8,6 +8,8 @@ head -c 700 "$town" >input_cut.geojson
 refuses 1 "input_cut.geojson" footprints2prior input_cut.geojson
 refuses 2 "has no field 'height'; it has: h, storeys" footprints2prior "$town" --height-field height
 refuses 2 "has no layer 'roads'; it has: town" footprints2prior "$town" --layer roads
+refuses 1 "town.geojson" footprints2prior "$town" --quiet --crs EPSG:2154
+expect_in stderr "--crs"
 refuses 2 "not projected" footprints2prior "$town" --crs EPSG:4326
 refuses 1 "--assume-vertical" footprints2prior "$town" --crs EPSG:25832+5773
 refuses 1 "--bbox" footprints2prior "$town" --quiet --bbox 20,20,21,21

@@ -26,7 +26,7 @@ struct ModelOptions {
   template <class Visitor>
   void describe(Visitor& visit) {
     visit("lod", lod, {"only this level of detail; 0: of each building the highest", "", 0, 4});
-    visit("faces", faces, {"visible or all: visible leaves out walls that buildings share, undersides and floors"});
+    visit("faces", faces, {"visible or all: visible leaves out what other buildings and parts cover, undersides and floors"});
     visit("sigma", sigma_m, {"standard deviation of the models' surfaces", "m", 0.001, 65});
     visit("bridges", bridges, {"bridges too, as points of class bridge"});
     visit("vegetation", vegetation, {"plants too, as points of class vegetation: crowns change with seasons and years"});
@@ -47,8 +47,8 @@ struct ModelReport {
   Diagnostics diagnostics;
 };
 
-/// CityGML (.gml, .xml, .gz), CityJSON (.json) and CityJSONSeq (.jsonl) files to a prior. Files are streamed twice: first for the walls that
-/// buildings share (some 100 bytes a wall stay in memory), then for the points. srsName counts per building; where a CRS names latitude or northing
+/// CityGML (.gml, .xml, .gz), CityJSON (.json) and CityJSONSeq (.jsonl) files to a prior. Files are streamed twice: first for the faces that
+/// hide others (some 150 bytes a face stay in memory), then for the points. srsName counts per building; where a CRS names latitude or northing
 /// first, the order counts that fits its area of use better, and where both fit alike the URN and URL forms of srsName mean the authority's.
 /// @throws CrsError, FormatError, IoError, UsageError
 ModelReport build_model_prior(const std::vector<std::filesystem::path>& files, const PriorOptions& prior_options, const ModelOptions& model_options,

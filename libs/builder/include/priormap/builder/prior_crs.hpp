@@ -7,6 +7,7 @@
 #include <priormap/core/events.hpp>
 #include <priormap/geodesy/crs.hpp>
 #include <priormap/geodesy/lon_lat_area.hpp>
+#include <priormap/geodesy/transformer.hpp>
 
 namespace priormap {
 
@@ -28,6 +29,12 @@ InputCrs resolve_input_crs(const PriorOptions& options, const std::optional<Crs>
 /// @throws CrsError when the CRS is not projected in metres, or makes lengths wrong by more than 1 % in the middle of the area or of one of its edges, which the data
 /// touch, or a named vertical CRS is asked from undeclared heights, or inputs disagree on their heights and none is asked for.
 Crs resolve_prior_crs(const PriorOptions& options, const std::vector<InputCrs>& inputs, const std::optional<LonLatArea>& area, const Events& events);
+
+/// From a CRS of the input `file` to the prior's, where the data lie in `area`. @throws CrsError naming the file: no exact operation is known there
+Transformer transformer_to_prior(const Crs& input, const Crs& prior, const std::optional<LonLatArea>& area, const std::string& file);
+
+/// Whether a prior's CRS makes lengths wrong by 1 % at most all over an area.
+bool fits_lengths(const Crs& prior, const LonLatArea& area);
 
 /// The vertical part of a prior's CRS as the manifest names it; nothing where heights are undeclared.
 std::optional<std::string> vertical_name(const Crs& prior);

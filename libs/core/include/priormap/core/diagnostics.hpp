@@ -25,6 +25,7 @@ enum class DiagnosticCode : int {
   unsupported_roof = 704,       ///< roof shape replaced by a flat roof
   degenerate_geometry = 705,    ///< no area or no extent left after cleaning
   implausible_size = 706,       ///< larger than any building: coordinates gone wrong
+  repeated_outline = 707,       ///< the same outline as another building's
 };
 
 /// What went wrong with single features of an otherwise good file. Not thread-safe: one per thread, then `merge`.

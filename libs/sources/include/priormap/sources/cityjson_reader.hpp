@@ -10,7 +10,7 @@ enum class CityJsonLayout {
   sequence,   ///< CityJSONSeq: a header line, then one CityJSONFeature a line
 };
 
-/// By name: .jsonl and .ndjson are sequences.
+/// By name: .jsonl and .ndjson are sequences; others by content, where a second object follows the first line. A file that cannot be opened is a document.
 CityJsonLayout cityjson_layout(const std::filesystem::path& file);
 
 /// Streams the buildings, bridges, plants and TINReliefs of CityJSON 1.0 to 2.0 or CityJSONSeq (CityJSON specification 2.0.1): transform, LoD
