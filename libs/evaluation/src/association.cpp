@@ -39,6 +39,13 @@ std::vector<PosePair> by_stamp(const Trajectory& reference, const Trajectory& es
   return pairs;
 }
 
+/// Where two clocks agree on the first pair but not on all, a scan is missing from one of the recordings, whose indices go on without it.
+bool indices_count_apart(const Trajectory& reference, const Trajectory& estimate, const std::vector<PosePair>& pairs, double max_time_diff_s) {
+  if (reference.stamps_s.empty() || estimate.stamps_s.empty() || pairs.empty()) return false;
+  const auto agree = [&](const PosePair& pair) { return std::abs(reference.stamps_s[pair.reference] - estimate.stamps_s[pair.estimate]) <= max_time_diff_s; };
+  return agree(pairs.front()) && !std::all_of(pairs.begin(), pairs.end(), agree);
+}
+
 std::vector<PosePair> by_line(const Trajectory& reference, const Trajectory& estimate) {
   std::vector<PosePair> pairs(std::min(reference.size(), estimate.size()));
   for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = {i, i};
@@ -48,7 +55,10 @@ std::vector<PosePair> by_line(const Trajectory& reference, const Trajectory& est
 }  // namespace
 
 std::vector<PosePair> associate(const Trajectory& reference, const Trajectory& estimate, double max_time_diff_s) {
-  if (!reference.indices.empty() && !estimate.indices.empty()) return by_index(reference, estimate);
+  if (!reference.indices.empty() && !estimate.indices.empty()) {
+    const std::vector<PosePair> pairs = by_index(reference, estimate);
+    if (!indices_count_apart(reference, estimate, pairs, max_time_diff_s)) return pairs;
+  }
   if (!reference.stamps_s.empty() && !estimate.stamps_s.empty()) return by_stamp(reference, estimate, max_time_diff_s);
   return by_line(reference, estimate);
 }

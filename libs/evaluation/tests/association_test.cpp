@@ -34,6 +34,17 @@ TEST(Associate, ByIndexGoesBeforeStamps) {
   EXPECT_EQ(pairs[1].reference, 0u);
 }
 
+/// The mapper counts the scans that there are; the truth counts those that were lost as well.
+TEST(Associate, IndicesThatCountPastMissingScansGiveWayToStamps) {
+  Trajectory reference = at_times({0, 0.1, 0.2, 0.3, 0.4}), estimate = at_times({0, 0.1, 0.3, 0.4});
+  reference.indices = {0, 1, 2, 3, 4};
+  estimate.indices = {0, 1, 2, 3};
+  const auto pairs = associate(reference, estimate, 0.01);
+  ASSERT_EQ(pairs.size(), 4u);
+  EXPECT_EQ(pairs[2].reference, 3u);
+  EXPECT_EQ(pairs[3].reference, 4u);
+}
+
 TEST(Associate, WithNothingInCommonGoesLineByLine) { EXPECT_EQ(associate(made::winding(5), at_times({7, 8, 9}), 0.01).size(), 3u); }
 
 }  // namespace

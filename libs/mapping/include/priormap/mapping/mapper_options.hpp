@@ -103,7 +103,7 @@ struct EstimateOptions {
   double surface_sigma_m = 0.1;
   double ground_surface_sigma_m = 0.03;
   double common_share = 0.06;
-  double wall_common_share = 0.36;
+  double wall_common_share = 0.15;
   double ground_common_share = 0.03;
   double kernel_width = 3;
   double ground_kernel_width = 2.5;
