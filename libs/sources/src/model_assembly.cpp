@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <tuple>
 
 namespace priormap {
 namespace {
@@ -106,7 +107,9 @@ struct SolidSides {
 /// of a boundary surface says which way it looks.
 std::vector<GeometryItem> resolve_references(GeometryItems& geometry, const GeometryItems& shared, std::size_t& unresolved) {
   std::vector<GeometryItem> resolved;
-  std::set<std::pair<const GeometryItem*, int>> brought_in;   // polygon, level; templates may come many times
+  constexpr std::size_t max_shared_vertices = 8'000'000;
+  std::size_t num_shared_vertices = 0;
+  std::set<std::tuple<const GeometryItem*, int, int>> brought_in;   // polygon, level, part; templates may come many times
   std::unordered_map<std::size_t, SurfaceClass> named;
   std::unordered_map<std::size_t, SolidSides> sides;
   Resolver resolver(geometry, shared);
@@ -120,7 +123,11 @@ std::vector<GeometryItem> resolve_references(GeometryItems& geometry, const Geom
         if (context.solid != 0 && target.context.thematic) (flip ? sides[index].turned : sides[index].as_stated) = true;
         return;
       }
-      if (!reference.placement && !brought_in.insert({&target, context.lod}).second) return;
+      if (!reference.placement) {
+        if (!brought_in.insert({&target, context.lod, context.object}).second) return;
+        for_each_ring(target.polygon.polygon, [&](const Ring3& ring) { num_shared_vertices += ring.size(); });
+        if (num_shared_vertices > max_shared_vertices) return void(++unresolved);
+      }
       GeometryItem copy{context, target.polygon, {}, {}};
       if (reference.placement) place(copy.polygon.polygon, *reference.placement);
       if (flip) reverse(copy.polygon.polygon);

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <set>
+
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -70,6 +73,16 @@ TEST(CityGml, APartyWallIsAFaceOfEachBodyThatItParts) {
   EXPECT_FALSE(twice[0].repeated);
   EXPECT_TRUE(twice[1].repeated);
   EXPECT_EQ(read(document(building(part(solid(toward) + surface("WallSurface", away)))))[0].polygons.size(), 1u);   // the same body, carelessly wound
+}
+
+TEST(CityGml, APolygonIsOfEachPartThatRefersToIt) {
+  const auto part = [](const std::string& content) { return "<bldg:consistsOfBuildingPart><bldg:BuildingPart>" + content + "</bldg:BuildingPart></bldg:consistsOfBuildingPart>"; };
+  const auto models = read(document(building(solid(member(square("p", 0))) + part(solid(link("p"))) + part(solid(link("p"))))));
+  ASSERT_EQ(models[0].polygons.size(), 3u);
+  std::set<int> parts;
+  for (const ModelPolygon& polygon : models[0].polygons) parts.insert(polygon.part);
+  EXPECT_EQ(parts.size(), 3u);
+  EXPECT_EQ(std::ranges::count(models[0].polygons, false, &ModelPolygon::repeated), 1);
 }
 
 TEST(CityGml, EveryPartAndSurfaceMayStateItsEnvelopeAndIsStillOfItsBuilding) {
