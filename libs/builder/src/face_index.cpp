@@ -53,7 +53,7 @@ void FaceIndex::add(const ModelFace& face, std::uint32_t solid) {
   }
   if (!((box.min() - origin_).cwiseAbs().maxCoeff() < farthest_m && (box.max() - origin_).cwiseAbs().maxCoeff() < farthest_m)) return;
 
-  IndexedFace indexed{face.normal.cast<float>(), static_cast<std::uint32_t>(vertices_mm_.size()), 0, solid};
+  IndexedFace indexed{face.normal.cast<float>(), static_cast<std::uint32_t>(vertices_mm_.size()), 0, solid, face.repeated};
   const auto add_vertex = [&](const Eigen::Vector3d& p) { vertices_mm_.push_back((1e3 * (p - origin_)).array().round().cast<int>()); };
   const auto add_ring = [&](const Ring3& ring) {
     for (const Eigen::Vector3d& p : ring) add_vertex(p);
@@ -75,7 +75,7 @@ struct FaceIndex::Candidate {
   const IndexedFace* face;
   Eigen::Vector3d normal, anchor;       // from the index's origin
   Eigen::Vector2d low, high;            // of its plan
-  bool same_solid, repeats, closed;     // repeats: of a later part of the same building; closed: of a solid that encloses a space
+  bool same_solid, repeats, closed;     // repeats: built with a later part of the same building; closed: of a solid that encloses a space
 };
 
 std::vector<FaceIndex::Candidate> FaceIndex::candidates(std::uint32_t model, const ModelFace& face) const {
@@ -85,7 +85,7 @@ std::vector<FaceIndex::Candidate> FaceIndex::candidates(std::uint32_t model, con
     const IndexedFace& other = faces_[i];
     const Solid& solid = solids_[other.solid];
     const bool same_model = solid.model == model, same_solid = same_model && solid.part == face.part;
-    Candidate candidate{&other, other.normal.cast<double>(), vertex(other.first), {}, {}, same_solid, same_model && solid.part > face.part, solid.closed};
+    Candidate candidate{&other, other.normal.cast<double>(), vertex(other.first), {}, {}, same_solid, same_model && solid.part > face.part && !other.repeated, solid.closed};
     const bool may_touch = !face.planar || std::abs(candidate.normal.dot(face.normal)) > same_direction;
     if (!may_touch && !candidate.closed) continue;
     candidate.low = candidate.high = candidate.anchor.head<2>();

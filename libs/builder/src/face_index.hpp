@@ -11,7 +11,8 @@ namespace priormap {
 
 /// The faces of all building models, to find the spots of a face that others hide: where another face touches it looking the other way (walls that buildings share, a
 /// roof under what stands on it), and where the space right in front lies inside another solid, be it a building or a part of the same. Where parts of a building
-/// state one spot twice, the later keeps it: parts come after the body and are drawn in more detail.
+/// state one spot twice, the later keeps it: parts come after the body and are drawn in more detail. A polygon that several parts state bounds the solid of each,
+/// and is hidden by none of its repetitions: they are not built.
 /// Const members are thread-safe after `finish`.
 class FaceIndex {
  public:
@@ -35,6 +36,7 @@ class FaceIndex {
     Eigen::Vector3f normal;
     std::uint32_t first, end;   ///< of its vertices; rings follow each other, each closed by its first vertex
     std::uint32_t solid;
+    bool repeated;              ///< as ModelFace's
   };
   struct Candidate;
   class Spot;

@@ -114,30 +114,32 @@ std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diag
   std::vector<ModelFace> faces;
   faces.reserve(model.polygons.size());
   double total_m2 = 0;
+  Diagnostics counted_already;
   for (const ModelPolygon& stated : model.polygons) {
-    if (!stated.closed) diagnostics.add(DiagnosticCode::ring_not_closed, model.id, "a ring does not repeat its first point");
-    ModelFace face{stated.polygon, Eigen::Vector3d::Zero(), stated.surface_class, stated.part};
-    if (!clean(face.polygon.exterior, model.id, diagnostics)) continue;
-    std::erase_if(face.polygon.holes, [&](Ring3& hole) { return !clean(hole, model.id, diagnostics); });
+    Diagnostics& counts = stated.repeated ? counted_already : diagnostics;
+    if (!stated.closed) counts.add(DiagnosticCode::ring_not_closed, model.id, "a ring does not repeat its first point");
+    ModelFace face{stated.polygon, Eigen::Vector3d::Zero(), stated.surface_class, stated.part, stated.repeated};
+    if (!clean(face.polygon.exterior, model.id, counts)) continue;
+    std::erase_if(face.polygon.holes, [&](Ring3& hole) { return !clean(hole, model.id, counts); });
     const Eigen::Vector3d twice_area = newell_normal(face.polygon);
     if (!(twice_area.norm() > 1e-6)) {
-      diagnostics.add(DiagnosticCode::degenerate_geometry, model.id, "a polygon without area");
+      counts.add(DiagnosticCode::degenerate_geometry, model.id, "a polygon without area");
       continue;
     }
     const double area_m2 = 0.5 * twice_area.norm();
     if (is_implausible(face.polygon, total_m2 + area_m2)) {
-      diagnostics.add(DiagnosticCode::implausible_size, model.id, "larger than any building; left out");
+      counts.add(DiagnosticCode::implausible_size, model.id, "larger than any building; left out");
       continue;
     }
-    if (model.kind != ModelKind::terrain) total_m2 += area_m2;
+    if (model.kind != ModelKind::terrain && !stated.repeated) total_m2 += area_m2;
     face.normal = twice_area.normalized();
     const double deviation = deviation_from_plane(face.polygon, face.normal);
     face.planar = deviation <= planarity_m;
-    if (!face.planar) diagnostics.add(DiagnosticCode::non_planar_polygon, model.id, std::to_string(deviation) + " m from its plane");
+    if (!face.planar) counts.add(DiagnosticCode::non_planar_polygon, model.id, std::to_string(deviation) + " m from its plane");
     faces.push_back(std::move(face));
   }
   if (model.kind != ModelKind::terrain) turn_solids_outward(faces, model.id, diagnostics);
-  for (ModelFace& face : faces) name_and_turn(face, model, diagnostics);
+  for (ModelFace& face : faces) name_and_turn(face, model, face.repeated ? counted_already : diagnostics);
   return faces;
 }
 
@@ -164,7 +166,7 @@ std::vector<std::vector<std::vector<Eigen::Vector2d>>> footprint_of(const std::v
   const auto outlines_of = [&](SurfaceClass surface_class) {
     std::vector<std::vector<std::vector<Eigen::Vector2d>>> outlines;
     for (const ModelFace& face : faces) {
-      if (face.surface_class != surface_class || std::abs(face.normal.z()) < 0.1) continue;
+      if (face.repeated || face.surface_class != surface_class || std::abs(face.normal.z()) < 0.1) continue;
       std::vector<std::vector<Eigen::Vector2d>> rings;
       for_each_ring(face.polygon, [&](const Ring3& ring) {
         std::vector<Eigen::Vector2d>& flat = rings.emplace_back();

@@ -13,6 +13,7 @@ struct ModelFace {
   Eigen::Vector3d normal;   ///< unit, outward
   SurfaceClass surface_class;
   int part = 0;             ///< as ModelPolygon's
+  bool repeated = false;    ///< likewise
   bool planar = true;       ///< within 1 cm (val3dity's default)
 };
 

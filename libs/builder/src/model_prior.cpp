@@ -155,7 +155,7 @@ class ModelSampler {
 
  private:
   void collect_points(const ModelFace& face, std::uint32_t number, ModelKind kind, std::uint32_t model_number) {
-    if (visible_only_ && !can_be_seen(face, kind)) return;
+    if (face.repeated || (visible_only_ && !can_be_seen(face, kind))) return;
     points_.clear();
     normals_.clear();
     if (face.planar) {
@@ -234,7 +234,7 @@ class Sampling {
                                std::to_string(model.unresolved_references) + " references to what the file does not hold");
       }
       if (model.polygons.empty()) return;
-      report.polygons += model.polygons.size();
+      report.polygons += static_cast<std::size_t>(std::ranges::count(model.polygons, false, &ModelPolygon::repeated));
       frames_.to_prior(model, file.path.string());
       batch_.push_back(std::move(model));
       if (batch_.size() == batch_size) finish_batch();

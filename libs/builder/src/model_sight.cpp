@@ -24,7 +24,7 @@ std::pair<int, int> square_of(const Eigen::Vector2d& place) {
 void ModelSight::add(const std::vector<ModelFace>& faces) {
   double lowest = std::numeric_limits<double>::infinity();
   for (const ModelFace& face : faces) {
-    if (face.surface_class != SurfaceClass::closure) occluders_.append(triangulate(face.polygon));
+    if (face.surface_class != SurfaceClass::closure && !face.repeated) occluders_.append(triangulate(face.polygon));
     for (const Eigen::Vector3d& p : face.polygon.exterior) lowest = std::min(lowest, p.z());
   }
   for (const ModelFace& face : faces)

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <tuple>
 
 namespace priormap {
 namespace {
@@ -23,24 +24,35 @@ std::string signature(const Polygon3& polygon) {
 /// Which polygons have been met, wherever they start and whichever way round they go.
 class SeenPolygons {
  public:
-  /// False where the polygon repeats one of its own body (a boundary surface repeats its solid's, carelessly wound or not) or one of any body that looks the same way.
-  bool insert(const GeometryItem& item) {
+  enum class Met {
+    first,      ///< by all the building
+    in_part,    ///< its own body states it already (a boundary surface repeats its solid's, carelessly wound or not), or another solid of the same part, looking the same way
+    elsewhere,  ///< another part states it, looking the same way
+  };
+  Met insert(const GeometryItem& item) {
     const Eigen::Vector3d normal = newell_normal(item.polygon.polygon);
-    std::vector<Face>& faces = faces_[signature(item.polygon.polygon)];
-    for (const Face& face : faces) {
+    Sides& sides = sides_[signature(item.polygon.polygon)];
+    std::vector<Face>& own = sides.of_object[item.context.object];
+    for (const Face& face : own) {
       const bool same_solid = face.solid == item.context.solid || face.solid == 0 || item.context.solid == 0;
-      if ((face.object == item.context.object && same_solid) || !(face.normal.dot(normal) < 0)) return false;
+      if (same_solid || !(face.normal.dot(normal) < 0)) return Met::in_part;
     }
-    faces.push_back({item.context.object, item.context.solid, normal});
-    return true;
+    own.push_back({item.context.solid, normal});
+    if (std::ranges::any_of(sides.met, [&](const Eigen::Vector3d& side) { return !(side.dot(normal) < 0); })) return Met::elsewhere;
+    sides.met.push_back(normal);
+    return Met::first;
   }
 
  private:
   struct Face {
-    int object, solid;
+    int solid;
     Eigen::Vector3d normal;
   };
-  std::unordered_map<std::string, std::vector<Face>> faces_;
+  struct Sides {
+    std::vector<Eigen::Vector3d> met;             ///< two at most: they look away from each other
+    std::map<int, std::vector<Face>> of_object;   ///< likewise
+  };
+  std::unordered_map<std::string, Sides> sides_;
 };
 
 void reverse(Polygon3& polygon) {
@@ -95,7 +107,9 @@ struct SolidSides {
 /// of a boundary surface says which way it looks.
 std::vector<GeometryItem> resolve_references(GeometryItems& geometry, const GeometryItems& shared, std::size_t& unresolved) {
   std::vector<GeometryItem> resolved;
-  std::set<std::pair<const GeometryItem*, int>> brought_in;   // polygon, level; templates may come many times
+  constexpr std::size_t max_shared_vertices = 8'000'000;
+  std::size_t num_shared_vertices = 0;
+  std::set<std::tuple<const GeometryItem*, int, int>> brought_in;   // polygon, level, part; templates may come many times
   std::unordered_map<std::size_t, SurfaceClass> named;
   std::unordered_map<std::size_t, SolidSides> sides;
   Resolver resolver(geometry, shared);
@@ -109,7 +123,11 @@ std::vector<GeometryItem> resolve_references(GeometryItems& geometry, const Geom
         if (context.solid != 0 && target.context.thematic) (flip ? sides[index].turned : sides[index].as_stated) = true;
         return;
       }
-      if (!reference.placement && !brought_in.insert({&target, context.lod}).second) return;
+      if (!reference.placement) {
+        if (!brought_in.insert({&target, context.lod, context.object}).second) return;
+        for_each_ring(target.polygon.polygon, [&](const Ring3& ring) { num_shared_vertices += ring.size(); });
+        if (num_shared_vertices > max_shared_vertices) return void(++unresolved);
+      }
       GeometryItem copy{context, target.polygon, {}, {}};
       if (reference.placement) place(copy.polygon.polygon, *reference.placement);
       if (flip) reverse(copy.polygon.polygon);
@@ -173,7 +191,9 @@ void assemble(GeometryItems geometry, const GeometryItems& shared, const Buildin
   for (GeometryItem& item : items) {
     const auto lod = lods.find(item.context.object);
     if (lod == lods.end() || lod->second != item.context.lod) continue;
-    if (!seen.insert(item)) continue;
+    const SeenPolygons::Met met = seen.insert(item);
+    if (met == SeenPolygons::Met::in_part) continue;
+    item.polygon.repeated = met == SeenPolygons::Met::elsewhere;
     item.polygon.surface_class = item.context.surface_class;
     item.polygon.part = item.context.object;
     model.lod = std::max(model.lod, item.context.lod / 10);

@@ -42,7 +42,7 @@ void place(Polygon3& polygon, const Eigen::Affine3d& T_model_template);
 std::vector<std::string> missing_references(const GeometryItems& geometry);
 
 /// Resolves references (`shared` holds what is stated outside the building), chooses the level of detail of the building and
-/// of each part, and drops repeated polygons. Fills `model.polygons`, `model.lod` and `model.unresolved_references`.
+/// of each part, drops what a part repeats of itself and marks what it repeats of others. Fills `model.polygons`, `model.lod` and `model.unresolved_references`.
 void assemble(GeometryItems geometry, const GeometryItems& shared, const BuildingModelOptions& options, BuildingModel& model);
 
 /// Boundary surface names of CityGML 1 to 3 and CityJSON, such as "WallSurface"; nullopt for other names.

@@ -42,7 +42,8 @@ inline double polygon_area(const Polygon3& polygon) {
 inline std::map<SurfaceClass, double> area_by_class(const std::vector<BuildingModel>& models) {
   std::map<SurfaceClass, double> areas;
   for (const BuildingModel& model : models) {
-    for (const ModelPolygon& polygon : model.polygons) areas[polygon.surface_class] += polygon_area(polygon.polygon);
+    for (const ModelPolygon& polygon : model.polygons)
+      if (!polygon.repeated) areas[polygon.surface_class] += polygon_area(polygon.polygon);
   }
   return areas;
 }

@@ -70,7 +70,7 @@ build() {
   rm -rf prior prior.xyz*
   : >upright
   : >level
-  case $1 in *json) set -- "$1" --assume-vertical EPSG:7837 ;; esac
+  case $1 in *json) set -- "$@" --assume-vertical EPSG:7837 ;; esac
   succeeds citygml2prior "$@" --quiet -o prior
   succeeds priorexport prior -o prior.xyz
   local origin   # what positions in the file count from
@@ -112,6 +112,15 @@ for form in "gml solid" "gml surfaces" "json solid" "json surfaces"; do
   none "the wall between parts" 9.9 10.1 0.3 19.7 100.3 107.7
   none_upright "its top row" 9.9 10.1 0.3 19.7 107.9 108.1
   some "the roof of a part" 741 0.3 9.7 0.3 19.7 107.9 108.1
+
+  # A higher part on the ground polygon of the body: both are closed, and the body's roof stands inside the part.
+  $language $level "$body" "0 0 20 20 100 120" >shared.$language
+  build shared.$language
+  none "the body's roof inside a higher part" 0.3 19.7 0.3 19.7 107.9 108.1
+  some "the wall that both state" 585 0.3 19.7 -0.1 0.1 100.3 107.7
+  some "the roof of the part" 1521 0.3 19.7 0.3 19.7 119.9 120.1
+  build shared.$language --faces all
+  some "the ground that both state" 1521 0.3 19.7 0.3 19.7 99.9 100.1
 done
 
 # A thin canopy hides no roof of its own, and blocks stated in one object hide each other as parts do.

@@ -16,6 +16,7 @@ struct ModelPolygon {
   SurfaceClass surface_class = SurfaceClass::unclassified;  ///< unclassified: the file names no boundary surface
   bool closed = true;                                       ///< every ring repeated its first point (CityJSON: by definition)
   int part = 0;                                             ///< 0: of the building itself, 1...: of its parts
+  bool repeated = false;                                    ///< another part, listed before, states it too, looking the same way: a face of both, to be built once
 };
 
 enum class ModelKind {
