@@ -55,7 +55,7 @@ std::vector<Eigen::Vector2d> places_inside(const ProjectedFootprint& footprint) 
   const double step = std::sqrt(size / num_inside);
   const Bounds2& b = footprint.bounds;
   const double width = b.max_x - b.min_x, height = b.max_y - b.min_y;
-  if (std::min(width, height) < step || width * height > most_in_bounds * step * step) return places_along(footprint);
+  if (std::min(width, height) <= step || width * height > most_in_bounds * step * step) return places_along(footprint);
   std::vector<Eigen::Vector2d> places;
   for (double y = b.min_y + 0.5 * step; y < b.max_y; y += step)
     for (double x = b.min_x + 0.5 * step; x < b.max_x; x += step)

@@ -75,14 +75,18 @@ std::string text_of(const GeoPoint& place) {
 
 /// Of the strays those that the prior's CRS does not reach, or where it makes lengths wrong; says of all where they lie.
 std::vector<OutlineGroup> beyond_prior(const std::vector<OutlineGroup>& strays, const LonLatArea& main, const Crs& prior, const std::vector<InputCrs>& outlines, const Events& events) {
+  constexpr std::size_t most_named = 10;
   std::vector<OutlineGroup> beyond;
-  for (const OutlineGroup& stray : strays) {
+  for (std::size_t i = 0; i < strays.size(); ++i) {
+    const OutlineGroup& stray = strays[i];
     const bool fits = stray.area && fits_lengths(prior, *stray.area);
+    if (!fits) beyond.push_back(stray);
+    if (i >= most_named) continue;
     const std::string others = stray.count > 1 ? " and " + std::to_string(stray.count - 1) + " more near it" : "";
     events.warn(outlines[stray.file].file + ": " + stray.first + others + (stray.count > 1 ? " lie" : " lies") + (stray.area ? " at " + text_of(stray.area->middle()) : std::string(" nowhere on Earth")) +
                 ", far from the rest (" + text_of(main.middle()) + "); " + (fits ? "kept, --bbox leaves out what is not wanted" : "left out, " + prior.horizontal().human_name() + " is not made for there"));
-    if (!fits) beyond.push_back(stray);
   }
+  if (strays.size() > most_named) events.warn("and " + std::to_string(strays.size() - most_named) + " more places far from the rest");
   return beyond;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -128,12 +129,16 @@ OutlineGroup::Cell cell_of(const Footprint& footprint, const Crs& crs) {
 
 std::vector<OutlineGroup> outline_groups(const OutlineInput& input, const std::vector<InputCrs>& outlines) {
   Cells cells = cells_of(input, outlines);
-  std::vector<OutlineGroup> groups;
+  std::vector<OutlineGroup> groups, nowhere;   // the latter may be as many as there are outlines
   while (!cells.empty()) {
     const Crs& crs = outlines[cells.begin()->first.file].crs;
     auto [group, bounds] = take_group(cells, crs.is_geographic());
     const Bounds2 own = bounds.of(crs);
     group.area = lon_lat_area(own, crs);
+    if (!group.area) {
+      nowhere.push_back(std::move(group));
+      continue;
+    }
     groups.push_back(std::move(group));
     // A group that is near several others joins them all.
     for (std::size_t i = 0; i + 1 < groups.size();) {
@@ -149,6 +154,7 @@ std::vector<OutlineGroup> outline_groups(const OutlineInput& input, const std::v
       i = 0;
     }
   }
+  std::ranges::move(nowhere, std::back_inserter(groups));
   std::ranges::stable_sort(groups, std::ranges::greater{}, &OutlineGroup::count);
   return groups;
 }
