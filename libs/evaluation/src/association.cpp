@@ -56,8 +56,10 @@ std::vector<PosePair> by_line(const Trajectory& reference, const Trajectory& est
 
 std::vector<PosePair> associate(const Trajectory& reference, const Trajectory& estimate, double max_time_diff_s) {
   if (!reference.indices.empty() && !estimate.indices.empty()) {
-    const std::vector<PosePair> pairs = by_index(reference, estimate);
+    std::vector<PosePair> pairs = by_index(reference, estimate);
     if (!indices_count_apart(reference, estimate, pairs, max_time_diff_s)) return pairs;
+    std::vector<PosePair> by_time = by_stamp(reference, estimate, max_time_diff_s);
+    return by_time.size() < pairs.size() ? pairs : by_time;   // fewer: the clocks merely jitter
   }
   if (!reference.stamps_s.empty() && !estimate.stamps_s.empty()) return by_stamp(reference, estimate, max_time_diff_s);
   return by_line(reference, estimate);

@@ -45,6 +45,12 @@ TEST(Associate, IndicesThatCountPastMissingScansGiveWayToStamps) {
   EXPECT_EQ(pairs[3].reference, 4u);
 }
 
+TEST(Associate, ClocksThatJitterDoNotOutvoteIndices) {
+  Trajectory reference = at_times({0, 0.1, 0.2, 0.3}), estimate = at_times({0, 0.13, 0.22, 0.3});
+  reference.indices = estimate.indices = {0, 1, 2, 3};
+  EXPECT_EQ(associate(reference, estimate, 0.01).size(), 4u);
+}
+
 TEST(Associate, WithNothingInCommonGoesLineByLine) { EXPECT_EQ(associate(made::winding(5), at_times({7, 8, 9}), 0.01).size(), 3u); }
 
 }  // namespace
