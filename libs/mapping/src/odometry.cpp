@@ -16,7 +16,8 @@ bool UsualFit::admit(const TargetResult& match, bool after_loss) const {
   if (count_ < least) return true;
   if (static_cast<double>(match.num_correspondences) < least_known * num_known_) return false;
   const double share = match.inlier_share() / share_, rmse = match.inlier_rmse_m / rmse_m_;
-  return after_loss ? share > 0.85 && rmse < 1.8 : share > 0.7 || rmse < 2;
+  if (after_loss) return share > 0.85 && rmse < 1.8;
+  return (share > 0.7 || rmse < 2) && (share > 0.95 || rmse < 4);   // on flat ground nine tenths of another street fit
 }
 
 bool UsualFit::has_usual_share(const MatchFigures& match) const {
@@ -153,32 +154,57 @@ std::optional<OdometryStep> Odometry::found_around(const SurfelCloud& scan, cons
 
 bool Odometry::gap_is_told(double middle_s) const { return middle_s - middle_last_s_ > std::max(longest_steady_s, 3 * usual_period_s_); }
 
-/// The scans from here on are followed apart, from where the first of them is guessed to be. Where the stamps tell of a gap, the street beyond it is another: it lies straight on, for no turn
-/// lasts that long, and the old one is soon given up; a scan or two that are hidden from it may still come by.
+/// Where no turn lasts that long.
+Eigen::Isometry3d Odometry::straight_on(double middle_s) const {
+  constexpr double longest_s = 10;
+  Vector6d velocity = velocity_;
+  velocity.head<3>().setZero();
+  return moved_on(T_odom_last_, velocity, std::clamp(middle_s - middle_last_s_, 0.0, longest_s));
+}
+
+/// Who was lost so long may have gone anywhere by then, and faster than before.
+double Odometry::unknown_way_m(double middle_s) const {
+  constexpr double least_m = 20, faster_m_s = 5, farthest_m = 100;
+  const double lost_s = std::max(middle_s - middle_last_s_, num_lost_ * usual_period_s_);
+  return std::min(farthest_m, least_m + lost_s * (velocity_.tail<3>().norm() + faster_m_s));
+}
+
+void Odometry::follow_apart_from(const Eigen::Isometry3d& T_odom_sensor, const Vector6d& velocity) {
+  apart_ = std::make_unique<Odometry>(options_, velocity);
+  apart_->T_odom_last_ = T_odom_sensor;
+}
+
+/// The scans from here on are followed apart, from where the first of them is guessed to be. Where the stamps tell of a gap, the street beyond it is another: it lies straight on, and the old one
+/// is soon given up; a scan or two that are hidden from it may still come by.
 void Odometry::get_lost(const Eigen::Isometry3d& guess, double middle_s) {
   constexpr int usual_patience = 100, patience_beyond_gap = 5;   // scans
-  constexpr double longest_s = 10;
   const bool told = gap_is_told(middle_s);
   num_to_give_up_ = told ? patience_beyond_gap : usual_patience;
   Vector6d velocity = velocity_;
   if (told) velocity.head<3>().setZero();
-  apart_ = std::make_unique<Odometry>(options_, velocity);
-  apart_->T_odom_last_ = told ? moved_on(T_odom_last_, velocity, std::min(middle_s - middle_last_s_, longest_s)) : guess;
+  follow_apart_from(told ? straight_on(middle_s) : guess, velocity);
 }
 
 /// While lost. A gap in the recording, perhaps: the old street may never come back.
-OdometryStep Odometry::followed_apart(SurfelCloud scan, double middle_s) {
-  apart_->stamp_goes_on_ = stamp_goes_on_;
-  OdometryStep found = apart_->step_in_middle(scan, middle_s);
-  if (apart_->apart_) {   // lost there as well: what came since then counts
-    num_to_give_up_ = std::min(num_to_give_up_, apart_->num_to_give_up_ + 1);
-    apart_ = std::move(apart_->apart_);
+OdometryStep Odometry::followed_apart(const SurfelCloud& scan, double middle_s) {
+  const auto follow = [&] {
+    SurfelCloud own = scan;
+    apart_->stamp_goes_on_ = stamp_goes_on_;
+    return apart_->step_in_middle(own, middle_s);
+  };
+  OdometryStep found = follow();
+  if (apart_->apart_) {   // lost there as well: that was elsewhere, and where this is the motion before the first loss tells best. Where the old street is back, it is soon found if it is to be
+    constexpr int patience_elsewhere = 12;   // scans: one search
+    num_to_give_up_ = std::min({num_to_give_up_, apart_->num_to_give_up_ + 1, patience_elsewhere});
+    follow_apart_from(straight_on(middle_s), apart_->apart_->velocity_);
+    found = follow();
   }
   ++num_lost_;
   found.joined = false;
   found.began_anew = --num_to_give_up_ == 0;
   if (!found.began_anew) return found;
   found.num_followed = apart_->num_in_map_ - 1;
+  found.unknown_way_m = unknown_way_m(middle_s);
   const auto begun = std::exchange(apart_, nullptr);
   begun->stamp_last_s_ = stamp_last_s_;
   *this = std::move(*begun);

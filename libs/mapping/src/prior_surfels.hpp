@@ -41,6 +41,7 @@ class PriorSurfels {
     for (std::size_t i = 0; i < num_layers; ++i) targets[i] = {&layers_[i], sigma_m, weights[i]};
     return targets;
   }
+  std::array<const SurfelMap*, num_layers> maps() const { return {&layers_[of_features], &layers_[of_the_rest]}; }
 
  private:
   struct SquaresOfSigmas {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <priormap/pointcloud/slope.hpp>
+#include <priormap/registration/likely_places.hpp>
 
 #include "confidence.hpp"
 #include "street_view.hpp"
@@ -24,10 +25,15 @@ SurfelCloud without_roofs(SurfelCloud scan, const Eigen::Matrix3d& R_map_sensor,
   return selected(scan, kept);
 }
 
+bool are_near(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double near_m, double near_rad) {
+  const Vector6d apart = local_coordinates(a, b);
+  return apart.tail<3>().norm() < near_m && apart.head<3>().norm() < near_rad;
+}
+
 }  // namespace
 
 PriorTracker::PriorTracker(const TrackingOptions& options, double scan_voxel_m, const std::optional<NearTiles>& prior, const Eigen::Isometry3d& T_map_first)
-    : options_(options), scan_voxel_m_(scan_voxel_m), registration_(options.registration), T_map_odom_(T_map_first), search_(options.search) {
+    : options_(options), scan_voxel_m_(scan_voxel_m), registration_(options.registration), T_map_odom_(T_map_first) {
   if (prior) prior_.emplace(*prior, PriorSurfels(options.prior));
 }
 
@@ -39,22 +45,41 @@ Matrix6d PriorTracker::predicted_covariance(const Eigen::Isometry3d& T_odom_sens
   return A * covariance_ * A.transpose() + Matrix6d((steps * drift.cwiseAbs2()).asDiagonal());
 }
 
+void PriorTracker::propose_places(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
+  constexpr double near_weight = 25;   // 1 m, 2.3 degrees
+  constexpr std::size_t most_places = 40;
+  const auto targets = map.targets(options_.prior_sigma_m, prior_weights_);
+  const auto propose = [&](const Eigen::Isometry3d& T_map_sensor) {
+    const bool known = std::ranges::any_of(hypotheses_, [&](const Hypothesis& h) { return are_near(h.T_map_odom * T_odom_sensor, T_map_sensor, 0.3, 0.01); });
+    if (!known) hypotheses_.push_back({T_map_sensor * T_odom_sensor.inverse(), 0});
+  };
+  const Eigen::Isometry3d T_start = T_map_odom_ * T_odom_sensor;
+  const Eigen::Isometry3d T_given = registration_.align(scan, targets, T_start, PosePrior{T_start, start_information(T_start)}).T_map_scan;
+  propose(T_given);
+  // Of a street that says little along it a loose start may slide by metres; what is near it is another place to be compared.
+  propose(registration_.align(scan, targets, T_start, PosePrior{T_start, near_weight * start_information(T_start)}).T_map_scan);
+  if (located_) {
+    for (const ScoredResult& other : registration_.search(scan, targets, T_given, options_.search, T_given)) propose(other.match.T_map_scan);
+  } else {
+    for (const Eigen::Isometry3d& T : likely_places(scan, map.maps(), T_start, unknown_way_m_, most_places)) propose(registration_.align(scan, targets, T).T_map_scan);
+  }
+}
+
+/// Of the best hypothesis that is another place than that.
+double PriorTracker::score_elsewhere(const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor) const {
+  constexpr double near_m = 3, near_rad = 0.1;
+  double best = -1;
+  for (const Hypothesis& h : hypotheses_)
+    if (!are_near(h.T_map_odom * T_odom_sensor, T_map_sensor, near_m, near_rad)) best = std::max(best, h.score / static_cast<double>(num_surfels_heard_));
+  return best;
+}
+
 /// The pose given by the user is left for another only if the scans of the first stretch fit clearly better there. Beyond a gap the drive is where they fit about as well as they did before:
 /// in a good prior 0.12 where it is and 0.02 at a wrong place, in a poor one 0.01 where it is.
 void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
-  constexpr double clear_gain = 0.02, least_score = 0.02, usual_loss = 0.04;   // a surfel
-  constexpr double near_weight = 25;   // 1 m, 2.3 degrees
+  constexpr double clear_gain = 0.02, least_score = 0.01, usual_loss = 0.04;   // a surfel
   const auto targets = map.targets(options_.prior_sigma_m, prior_weights_), to_compare = map.targets(options_.prior_sigma_m, PriorSurfels::unweighted);
-  if (hypotheses_.empty()) {
-    const Eigen::Isometry3d T_start = T_map_odom_ * T_odom_sensor;
-    const Eigen::Isometry3d T_given = registration_.align(scan, targets, T_start, PosePrior{T_start, start_information(T_start)}).T_map_scan;
-    hypotheses_.push_back({T_given * T_odom_sensor.inverse(), 0});
-    // Of a street that says little along it a loose start may slide by metres; what is near it is another place to be compared.
-    const Eigen::Isometry3d T_near = registration_.align(scan, targets, T_start, PosePrior{T_start, near_weight * start_information(T_start)}).T_map_scan;
-    hypotheses_.push_back({T_near * T_odom_sensor.inverse(), 0});
-    for (const ScoredResult& other : registration_.search(scan, targets, T_given, search_, located_ ? std::optional(T_given) : std::nullopt))
-      hypotheses_.push_back({other.match.T_map_scan * T_odom_sensor.inverse(), 0});
-  }
+  if (hypotheses_.empty()) propose_places(scan, T_odom_sensor, map);
   const Matrix6d information = (Vector6d() << Eigen::Vector3d::Constant(1e4), Eigen::Vector3d::Constant(10)).finished().asDiagonal();
   for (Hypothesis& h : hypotheses_) {
     const Eigen::Isometry3d T = h.T_map_odom * T_odom_sensor;
@@ -70,19 +95,24 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
   T_map_odom_ = chosen.T_map_odom;
   const double score = chosen.score / num_surfels;
   const int enough = std::min(4, options_.start_keyframes);
-  if (++num_heard_ >= enough) located_ = located_ || score > std::max(least_score, usual_score_ - usual_loss);
-  const bool in_vain = num_heard_ >= enough && !located_ && score < least_score;
+  const bool fits = score > std::max(least_score, usual_score_ - usual_loss);
+  if (++num_heard_ >= enough) located_ = located_ || (fits && score - score_elsewhere(chosen.T_map_odom * T_odom_sensor, T_odom_sensor) > clear_gain);
+  const bool in_vain = num_heard_ >= enough && !located_ && !fits;
   if (num_heard_ < options_.start_keyframes && !in_vain) return;
   hypotheses_.clear();
-  if (!located_) return begin_anew();
+  if (!located_) return look_anew();
   usual_score_ = score;
 }
 
-void PriorTracker::begin_anew() {
+void PriorTracker::begin_anew(double unknown_way_m) {
+  unknown_way_m_ = unknown_way_m;
+  look_anew();
+}
+
+void PriorTracker::look_anew() {
   T_odom_last_.reset();
   prior_weights_ = PriorSurfels::unweighted;
   hypotheses_.clear();
-  search_ = {.radius_m = 40, .yaw_rad = 1.2, .step_m = 2, .step_rad = 0.1, .sigma_m = 0.5, .surfels = 150, .refined = 30};
   located_ = !prior_ || options_.start_keyframes == 0;   // nothing to be found in; or no looking
   num_heard_ = 0;
   num_surfels_heard_ = 0;
@@ -90,7 +120,7 @@ void PriorTracker::begin_anew() {
 
 void PriorTracker::exchange(StateArchive& archive) {
   if (prior_) archive(*prior_);
-  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_, search_, located_, usual_score_, num_heard_, num_surfels_heard_);
+  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_, unknown_way_m_, located_, usual_score_, num_heard_, num_surfels_heard_);
 }
 
 void PriorTracker::go_on(const Eigen::Isometry3d& T_odom_sensor) {
@@ -100,8 +130,9 @@ void PriorTracker::go_on(const Eigen::Isometry3d& T_odom_sensor) {
 
 bool PriorTracker::asks() const {
   if (!prior_ || !T_odom_last_) return prior_.has_value();
+  constexpr double lost_step_m = 3;
   const bool is_held = num_heard_ >= options_.start_keyframes && heard_last_;
-  return way_since_asked_m_ >= (is_held ? options_.keyframe_m : options_.search_step_m);
+  return way_since_asked_m_ >= (is_held ? options_.keyframe_m : located_ ? options_.search_step_m : std::min(lost_step_m, options_.search_step_m));
 }
 
 PriorMatch PriorTracker::word_of(const JointResult& match, std::size_t num_surfels) const {

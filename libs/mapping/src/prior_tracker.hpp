@@ -31,8 +31,8 @@ class PriorTracker {
   bool asks() const;
   /// Where it `asks`. @return what the prior says; none to a scan without surfels
   std::optional<PriorMatch> follow(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor);
-  /// The odometry has a gap: the next scans are looked for far around their poses, until they fit clearly.
-  void begin_anew();
+  /// The odometry has a gap: the next scans are looked for around their poses, until they fit clearly. @param unknown_way_m  how far from there, in any direction and turned anyhow
+  void begin_anew(double unknown_way_m);
   /// Whether the drive has been found, since the odometry began anew. At first it is where the user says.
   bool is_located() const { return located_; }
   Eigen::Isometry3d T_map_odom() const { return T_map_odom_; }
@@ -43,7 +43,10 @@ class PriorTracker {
     Eigen::Isometry3d T_map_odom;
     double score;
   };
+  void look_anew();
+  void propose_places(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
   void compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
+  double score_elsewhere(const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor) const;
 
   PriorMatch word_of(const JointResult& match, std::size_t num_surfels) const;
   Matrix6d predicted_covariance(const Eigen::Isometry3d& T_odom_sensor) const;
@@ -60,7 +63,7 @@ class PriorTracker {
   Matrix6d covariance_ = Matrix6d::Zero();         // of T_map_odom * T_odom_last, tangent in sensor axes
   PriorSurfels::Weights prior_weights_ = PriorSurfels::unweighted;
   std::vector<Hypothesis> hypotheses_;             // where the drive may have begun; the first is the one given
-  PoseSearchOptions search_;                       // how far from there
+  double unknown_way_m_ = 0;                       // while it is not located
   bool located_ = true;
   double usual_score_ = 0.1;   // a surfel, where the drive was
   int num_heard_ = 0;
