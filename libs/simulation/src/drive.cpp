@@ -66,26 +66,28 @@ struct Shot {
   std::size_t index;
 };
 
-/// The drive with the scans of another street spliced in before its scan number `at`.
-std::vector<Shot> splice(const Stretch& drive, const Stretch& elsewhere, std::size_t at) {
+/// The drive with the scans of another street spliced in before its scan number `at`, or in place of as many from there on.
+std::vector<Shot> splice(const Stretch& drive, const Stretch& elsewhere, const KidnapOptions& kidnap) {
+  const auto at = static_cast<std::size_t>(kidnap.at_scan);
+  const std::size_t goes_on = at + (kidnap.drives_on ? elsewhere.path.size() : 0);
   std::vector<Shot> shots;
   for (std::size_t i = 0; i < drive.path.size(); ++i) {
     if (i == at)
       for (std::size_t k = 0; k < elsewhere.path.size(); ++k) shots.push_back({&elsewhere, k});
-    shots.push_back({&drive, i});
+    if (i < at || i >= goes_on) shots.push_back({&drive, i});
   }
   return shots;
 }
 
 /// Poses of the scans as they come, at stamps that go on through a splice.
-DrivePath recorded_path(const std::vector<Shot>& shots, const Stretch& elsewhere, double period_s) {
+DrivePath recorded_path(const std::vector<Shot>& shots, const Stretch& elsewhere, double period_s, bool drives_on) {
   DrivePath recorded;
   double away_s = 0;
   for (const Shot& shot : shots) {
     const bool is_elsewhere = shot.stretch == &elsewhere;
     recorded.stamps_s.push_back(is_elsewhere ? recorded.stamps_s.back() + period_s : shot.stretch->path.stamps_s[shot.index] + away_s);
     recorded.poses.push_back(shot.stretch->path.poses[shot.index]);
-    if (is_elsewhere) away_s += period_s;
+    if (is_elsewhere && !drives_on) away_s += period_s;
   }
   return recorded;
 }
@@ -246,8 +248,8 @@ DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output,
     return Stretch{ride(track, town.terrain, options.platform, options.seed), Traffic(track, options.route.traffic_spacing_m, options.seed)};
   };
   const Stretch drive = drive_stretch(plan.track), elsewhere = drive_stretch(plan.elsewhere);
-  const std::vector<Shot> shots = splice(drive, elsewhere, static_cast<std::size_t>(options.kidnap.at_scan));
-  const DrivePath path = recorded_path(shots, elsewhere, 1 / scan_rate_hz(options));
+  const std::vector<Shot> shots = splice(drive, elsewhere, options.kidnap);
+  const DrivePath path = recorded_path(shots, elsewhere, 1 / scan_rate_hz(options), options.kidnap.drives_on);
   // The town's frame lies under the first wheel track; the frame `map` of the outputs at the first sensor pose, some centimetres off when it tilts.
   const MapFrame map = MapFrame::at(plan.frame.projected(), plan.frame.to_projected(path.poses.front().translation()));
   events.inform(format("%zu buildings, %zu trees, %zu parked cars along %.0f m of drive", town.buildings.size(), town.trees.size(),

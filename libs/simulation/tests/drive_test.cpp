@@ -220,6 +220,22 @@ TEST_F(Drive, KidnappingSplicesInScansOfAnotherStreet) {
   fs::remove_all(root);
 }
 
+TEST_F(Drive, AKidnappedVehicleMayDriveOnMeanwhile) {
+  const fs::path root = fresh("kidnapped_driving");
+  DriveOptions options = small_drive();
+  options.kidnap = {1, 2, true};
+  EXPECT_EQ(simulate_drive(options, root, Overwrite::refuse, 2, {}).num_scans, 4u);
+  const std::vector<std::string> scans = scan_hashes(root), undisturbed = scan_hashes(root_);
+  const auto truth = table(root / "truth/trajectory.csv", ',', true);
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const bool kidnapped = i == 1 || i == 2;
+    EXPECT_EQ(scans[i] == undisturbed[i], !kidnapped) << i;
+    EXPECT_EQ(truth[i].back(), kidnapped ? 1 : 0);
+    EXPECT_NEAR(truth[i][1], 0.1 * static_cast<double>(i), 1e-6);
+  }
+  fs::remove_all(root);
+}
+
 /// A file of 40 poses along a bend, in lidar axes.
 fs::path recorded_bend() {
   const fs::path file = fresh("bend.txt");

@@ -28,6 +28,7 @@ traffic          kitti  osm,dsm  --traffic-spacing 30
 os1_128          kitti  osm,dsm  --sensor os1-128
 rig4             kitti  osm,dsm  --sensor rig4
 kidnap           kitti  osm,dsm  --kidnap-at 200 --kidnap-scans 60       # scored on the own street
+kidnap_drives_on kitti  osm,dsm  --kidnap-at 200 --kidnap-scans 60 --kidnap-drives-on
 hdl32            route  osm,dsm  --sensor hdl32 --speed 1.4 --mount-height 1.2 --wobble 4 --wobble-frequency 0.8   # NCLT-like
 hdl32_steady     kitti  osm,dsm  --sensor hdl32
 vlp16            kitti  osm,dsm  --sensor vlp16 --motion-distortion

@@ -55,15 +55,17 @@ struct RouteOptions {
   }
 };
 
-/// Scans of another street in the middle of the drive, as if the vehicle had been carried off and brought back to where it was.
+/// Scans of another street in the middle of the drive, as if the vehicle had been carried off and brought back to where it was, or to where it would have been by then.
 struct KidnapOptions {
   int at_scan = 0;
   int num_scans = 60;
+  bool drives_on = false;
 
   template <class Visitor>
   void describe(Visitor& visit) {
     visit("kidnap-at", at_scan, {"scan before which scans of another street come in; 0: none", "", 0, 1e7});
     visit("kidnap-scans", num_scans, {"how many of them", "", 1, 1e6});
+    visit("kidnap-drives-on", drives_on, {"they come in place of as many of its own"});
   }
 };
 
