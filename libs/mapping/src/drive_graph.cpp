@@ -123,6 +123,16 @@ void DriveGraph::add_common(const CommonVariance& common, const std::vector<bool
   }
 }
 
+void DriveGraph::scale_tilts(double scale, const std::vector<bool>& held, std::vector<Matrix6d>& covariances) const {
+  for (PoseId k = 0; k < size(); ++k) {
+    if (!held[k]) continue;
+    const Eigen::Vector3d up = poses_[k].linear().row(2);
+    Matrix6d S = Matrix6d::Identity();
+    S.topLeftCorner<3, 3>() = scale * Eigen::Matrix3d::Identity() + (1 - scale) * up * up.transpose();
+    covariances[k] = S * covariances[k] * S;
+  }
+}
+
 void DriveGraph::doubt_heights(double known_height_m, std::vector<Matrix6d>& covariances) const {
   const double gap_m = poses_.front().translation().z() - known_height_m;
   const Eigen::Vector3d up = poses_.front().linear().row(2);

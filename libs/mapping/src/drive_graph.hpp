@@ -47,6 +47,8 @@ class DriveGraph {
   /// Adds what poses have in common: `common` is of one place, and places that have no piece of the prior in sight in common are averaged where the odometry ties them.
   /// @param held  poses that the prior holds
   void add_common(const CommonVariance& common, const std::vector<bool>& held, std::vector<Matrix6d>& covariances) const;
+  /// Multiplies the standard deviations of roll and pitch of the poses that the prior holds; what they have to do with the others goes with them.
+  void scale_tilts(double scale, const std::vector<bool>& held, std::vector<Matrix6d>& covariances) const;
   /// Where the prior puts the start clearly above or below its known height, one of both is wrong, and no scan tells which.
   void doubt_heights(double known_height_m, std::vector<Matrix6d>& covariances) const;
 

@@ -78,6 +78,7 @@ std::vector<Matrix6d> PriorRounds::covariances(std::optional<double> known_heigh
   const EstimateOptions& how = options_.estimate;
   const std::vector<bool> held = pieces_.held(graph_.size());
   std::vector<Matrix6d> covariances = covariances_;
+  graph_.scale_tilts(how.tilt_scale, held, covariances);
   graph_.add_common(pieces_.common_variance(sigmas_, {how.common_share, how.wall_common_share, how.ground_common_share}), held, covariances);
   if (known_height_m && held.front()) graph_.doubt_heights(*known_height_m, covariances);
   return covariances;

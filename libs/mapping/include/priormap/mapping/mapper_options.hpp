@@ -103,8 +103,9 @@ struct EstimateOptions {
   double surface_sigma_m = 0.1;
   double ground_surface_sigma_m = 0.03;
   double common_share = 0.06;
-  double wall_common_share = 0.15;
-  double ground_common_share = 0.03;
+  double wall_common_share = 0.06;
+  double ground_common_share = 0.01;
+  double tilt_scale = 0.55;
   double kernel_width = 3;
   double ground_kernel_width = 2.5;
   int passes = 3;
@@ -125,6 +126,7 @@ struct EstimateOptions {
     visit("common-share", common_share, {"share of the variance of the buildings' offsets that those within sight of one place have in common, which their number does not average out", "", 0, 1});
     visit("wall-common-share", wall_common_share, {"the same of walls that belong to no building known, which a surface model puts to one side of the real ones", "", 0, 1});
     visit("ground-common-share", ground_common_share, {"the same of the ground", "", 0, 1});
+    visit("tilt-scale", tilt_scale, {"standard deviation of roll and pitch, as a share of what they would have if pieces of ground erred independently: neighbours err alike", "", 0.01, 1});
     visit("surface-sigma", surface_sigma_m, {"roughness of the prior's surfaces against the real ones, within a piece", "m", 1e-3, 10});
     visit("ground-surface-sigma", ground_surface_sigma_m, {"the same of its ground", "m", 1e-3, 10});
     visit("piece-kernel-width", kernel_width, {"width of the Geman-McClure kernel within a piece, in standard deviations", "", 0.5, 100});
