@@ -45,7 +45,7 @@ class JointMethod : public MappingMethod {
         [&](std::size_t i) { placed(join(stretches[i], *std::exchange(driven[i], std::nullopt), wanted.source)); });
   }
 
-  std::vector<EstimatedPose> finish(const ReadScan& read_again) override { return estimate_drive(records_, prior_, read_again, options_, known_height_m_); }
+  std::vector<EstimatedPose> finish(const ReadScan& read_again) override { return estimate_drive(records_, prior_, read_again, options_, tracker_.started_elsewhere() ? std::nullopt : known_height_m_); }
 
   void exchange(StateArchive& archive) override { archive(odometry_, T_odom_own_, tracker_, last_match_, records_); }
 
@@ -58,10 +58,13 @@ class JointMethod : public MappingMethod {
     const bool lost = !records_.empty() && !step.joined;
     if (!lost) tracker_.go_on(step.T_odom_sensor);
     if (!lost && tracker_.asks()) {
+      const bool as_given = !tracker_.started_elsewhere();
       if (const auto match = tracker_.follow(surfels(), step.T_odom_sensor)) {
         mapped.prior = match->figures;
         last_match_ = match;
       }
+      if (as_given && tracker_.started_elsewhere())
+        for (ScanRecord& record : records_) record.located = false;
     }
     mapped.T_map_online = tracker_.T_map_odom() * step.T_odom_sensor;
     mapped.verdict = lost ? Verdict::lost : verdict_by_prior();

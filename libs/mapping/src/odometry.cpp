@@ -16,8 +16,8 @@ bool UsualFit::admit(const TargetResult& match, bool after_loss) const {
   if (count_ < least) return true;
   if (static_cast<double>(match.num_correspondences) < least_known * num_known_) return false;
   const double share = match.inlier_share() / share_, rmse = match.inlier_rmse_m / rmse_m_;
-  if (after_loss) return share > 0.85 && rmse < 1.8;
-  return (share > 0.7 || rmse < 2) && (share > 0.95 || rmse < 4);   // on flat ground nine tenths of another street fit
+  if (after_loss) return share > 0.96 && rmse < 1.8;
+  return (share > 0.7 || rmse < 2) && (share > 0.95 || rmse < 3);   // on flat ground nine tenths of another street fit
 }
 
 bool UsualFit::has_usual_share(const MatchFigures& match) const {

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <priormap/pointcloud/slope.hpp>
 #include <priormap/registration/likely_places.hpp>
@@ -12,6 +13,10 @@
 
 namespace priormap {
 namespace {
+
+// Scores a surfel.
+constexpr double clear_gain = 0.02, least_score = 0.01;
+constexpr std::size_t most_places = 40;   // that are compared
 
 double translation_information(const Matrix6d& information) { return information.bottomRightCorner<3, 3>().trace(); }
 
@@ -47,11 +52,10 @@ Matrix6d PriorTracker::predicted_covariance(const Eigen::Isometry3d& T_odom_sens
 
 void PriorTracker::propose_places(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
   constexpr double near_weight = 25;   // 1 m, 2.3 degrees
-  constexpr std::size_t most_places = 40;
   const auto targets = map.targets(options_.prior_sigma_m, prior_weights_);
   const auto propose = [&](const Eigen::Isometry3d& T_map_sensor) {
-    const bool known = std::ranges::any_of(hypotheses_, [&](const Hypothesis& h) { return are_near(h.T_map_odom * T_odom_sensor, T_map_sensor, 0.3, 0.01); });
-    if (!known) hypotheses_.push_back({T_map_sensor * T_odom_sensor.inverse(), 0});
+    const bool known = std::ranges::any_of(hypotheses_.places, [&](const Hypothesis& h) { return are_near(h.T_map_odom * T_odom_sensor, T_map_sensor, 0.3, 0.01); });
+    if (!known) hypotheses_.places.push_back({T_map_sensor * T_odom_sensor.inverse(), 0});
   };
   const Eigen::Isometry3d T_start = T_map_odom_ * T_odom_sensor;
   const Eigen::Isometry3d T_given = registration_.align(scan, targets, T_start, PosePrior{T_start, start_information(T_start)}).T_map_scan;
@@ -65,43 +69,78 @@ void PriorTracker::propose_places(const SurfelCloud& scan, const Eigen::Isometry
   }
 }
 
-/// Of the best hypothesis that is another place than that.
-double PriorTracker::score_elsewhere(const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor) const {
+/// Registers each hypothesis anew, from where the odometry leads it, and adds how well it fits.
+void PriorTracker::hear(Hypotheses& hypotheses, const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
+  const auto targets = map.targets(options_.prior_sigma_m, prior_weights_), to_compare = map.targets(options_.prior_sigma_m, PriorSurfels::unweighted);
+  const Matrix6d information = (Vector6d() << Eigen::Vector3d::Constant(1e4), Eigen::Vector3d::Constant(10)).finished().asDiagonal();
+  for (Hypothesis& h : hypotheses.places) {
+    const Eigen::Isometry3d T = h.T_map_odom * T_odom_sensor;
+    const Eigen::Isometry3d T_aligned = registration_.align(scan, targets, T, PosePrior{T, information}).T_map_scan;
+    h.score += registration_.score(scan, to_compare, T_aligned, options_.search.sigma_m);
+    h.T_map_odom = T_aligned * T_odom_sensor.inverse();
+  }
+  hypotheses.num_surfels += static_cast<double>(scan.size());
+}
+
+const PriorTracker::Hypothesis& PriorTracker::Hypotheses::best() const { return *std::ranges::max_element(places, {}, &Hypothesis::score); }
+
+double PriorTracker::Hypotheses::best_score_elsewhere(const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor) const {
   constexpr double near_m = 3, near_rad = 0.1;
   double best = -1;
-  for (const Hypothesis& h : hypotheses_)
-    if (!are_near(h.T_map_odom * T_odom_sensor, T_map_sensor, near_m, near_rad)) best = std::max(best, h.score / static_cast<double>(num_surfels_heard_));
+  for (const Hypothesis& h : places)
+    if (!are_near(h.T_map_odom * T_odom_sensor, T_map_sensor, near_m, near_rad)) best = std::max(best, score(h));
   return best;
 }
 
 /// The pose given by the user is left for another only if the scans of the first stretch fit clearly better there. Beyond a gap the drive is where they fit about as well as they did before:
 /// in a good prior 0.12 where it is and 0.02 at a wrong place, in a poor one 0.01 where it is.
 void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
-  constexpr double clear_gain = 0.02, least_score = 0.01, usual_loss = 0.04;   // a surfel
-  const auto targets = map.targets(options_.prior_sigma_m, prior_weights_), to_compare = map.targets(options_.prior_sigma_m, PriorSurfels::unweighted);
-  if (hypotheses_.empty()) propose_places(scan, T_odom_sensor, map);
-  const Matrix6d information = (Vector6d() << Eigen::Vector3d::Constant(1e4), Eigen::Vector3d::Constant(10)).finished().asDiagonal();
-  for (Hypothesis& h : hypotheses_) {
-    const Eigen::Isometry3d T = h.T_map_odom * T_odom_sensor;
-    const Eigen::Isometry3d T_aligned = registration_.align(scan, targets, T, PosePrior{T, information}).T_map_scan;
-    h.score += registration_.score(scan, to_compare, T_aligned, options_.search.sigma_m);
-    h.T_map_odom = T_aligned * T_odom_sensor.inverse();
-  }
-  num_surfels_heard_ += scan.size();
-  const Hypothesis& given = hypotheses_.front();
-  const Hypothesis& best = *std::max_element(hypotheses_.begin(), hypotheses_.end(), [](const Hypothesis& a, const Hypothesis& b) { return a.score < b.score; });
-  const auto num_surfels = static_cast<double>(num_surfels_heard_);
-  const Hypothesis& chosen = best.score - given.score > clear_gain * num_surfels ? best : given;
+  constexpr double usual_loss = 0.04;   // a surfel
+  if (hypotheses_.places.empty()) propose_places(scan, T_odom_sensor, map);
+  hear(hypotheses_, scan, T_odom_sensor, map);
+  hear(farther_, scan, T_odom_sensor, map);
+  const Hypothesis &given = hypotheses_.places.front(), &best = hypotheses_.best();
+  const Hypothesis& chosen = best.score - given.score > clear_gain * hypotheses_.num_surfels ? best : given;
   T_map_odom_ = chosen.T_map_odom;
-  const double score = chosen.score / num_surfels;
+  double score = hypotheses_.score(chosen);
   const int enough = std::min(4, options_.start_keyframes);
   const bool fits = score > std::max(least_score, usual_score_ - usual_loss);
-  if (++num_heard_ >= enough) located_ = located_ || (fits && score - score_elsewhere(chosen.T_map_odom * T_odom_sensor, T_odom_sensor) > clear_gain);
+  if (++num_heard_ >= enough) located_ = located_ || (fits && score - hypotheses_.best_score_elsewhere(T_map_odom_ * T_odom_sensor, T_odom_sensor) > clear_gain);
+  if (num_heard_ % enough == 0 && is_farther(score, T_odom_sensor)) {
+    score = hypotheses_.score(hypotheses_.places.front());
+  } else if (num_heard_ % enough == 0 && located_ && score < least_score) {
+    look_farther(scan, T_odom_sensor, map);
+  }
   const bool in_vain = num_heard_ >= enough && !located_ && !fits;
   if (num_heard_ < options_.start_keyframes && !in_vain) return;
-  hypotheses_.clear();
+  hypotheses_ = {};
+  farther_ = {};
   if (!located_) return look_anew();
   usual_score_ = score;
+}
+
+/// Where the start that the user gave does not fit at all, it may be wrong by more than it should be.
+void PriorTracker::look_farther(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
+  constexpr double start_radius_m = 50;
+  const double radius_m = start_radius_m + T_odom_sensor.translation().norm();   // who faces the other way goes the other way
+  const auto targets = map.targets(options_.prior_sigma_m, prior_weights_);
+  farther_ = {};
+  for (const Eigen::Isometry3d& T : likely_places(scan, map.maps(), T_map_odom_ * T_odom_sensor, radius_m, most_places))
+    farther_.places.push_back({registration_.align(scan, targets, T).T_map_scan * T_odom_sensor.inverse(), 0});
+}
+
+/// But the user is believed unless one place is right beyond doubt: then it takes the place of those near the start.
+bool PriorTracker::is_farther(double score_near_start, const Eigen::Isometry3d& T_odom_sensor) {
+  constexpr double beyond_doubt = 0.03;   // a surfel
+  if (farther_.places.empty()) return false;
+  const Hypothesis best = farther_.best();
+  const double elsewhere = std::max(score_near_start, farther_.best_score_elsewhere(best.T_map_odom * T_odom_sensor, T_odom_sensor));
+  if (farther_.score(best) < least_score || farther_.score(best) - elsewhere < beyond_doubt) return false;
+  hypotheses_ = {{best}, farther_.num_surfels};
+  farther_ = {};
+  T_map_odom_ = best.T_map_odom;
+  T_odom_last_.reset();
+  return started_elsewhere_ = true;
 }
 
 void PriorTracker::begin_anew(double unknown_way_m) {
@@ -112,15 +151,15 @@ void PriorTracker::begin_anew(double unknown_way_m) {
 void PriorTracker::look_anew() {
   T_odom_last_.reset();
   prior_weights_ = PriorSurfels::unweighted;
-  hypotheses_.clear();
+  hypotheses_ = {};
+  farther_ = {};
   located_ = !prior_ || options_.start_keyframes == 0;   // nothing to be found in; or no looking
   num_heard_ = 0;
-  num_surfels_heard_ = 0;
 }
 
 void PriorTracker::exchange(StateArchive& archive) {
   if (prior_) archive(*prior_);
-  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_, unknown_way_m_, located_, usual_score_, num_heard_, num_surfels_heard_);
+  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_.places, hypotheses_.num_surfels, farther_.places, farther_.num_surfels, unknown_way_m_, located_, started_elsewhere_, usual_score_, num_heard_);
 }
 
 void PriorTracker::go_on(const Eigen::Isometry3d& T_odom_sensor) {
@@ -169,7 +208,8 @@ std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, co
     const Matrix6d information = predicted_covariance(T_odom_sensor).inverse();
     match = registration_.align(scan, targets, T_pred, PosePrior{T_pred, 0.5 * (information + information.transpose())});
   } else {
-    match = registration_.align(scan, targets, T_pred, PosePrior{guess, start_information(guess)});
+    const Eigen::Isometry3d& known = are_near(guess, T_pred, 10, 0.3) ? guess : T_pred;   // what is left for another place says nothing of that
+    match = registration_.align(scan, targets, T_pred, PosePrior{known, start_information(known)});
   }
   const PriorMatch found = word_of(match, scan.size());
   const bool accepted = found.figures.accepted;

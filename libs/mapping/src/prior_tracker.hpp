@@ -35,18 +35,30 @@ class PriorTracker {
   void begin_anew(double unknown_way_m);
   /// Whether the drive has been found, since the odometry began anew. At first it is where the user says.
   bool is_located() const { return located_; }
+  /// Whether the drive has been found far from where the user says that it starts: poses before this one are to be known from here.
+  bool started_elsewhere() const { return started_elsewhere_; }
   Eigen::Isometry3d T_map_odom() const { return T_map_odom_; }
   void exchange(StateArchive& archive);
 
  private:
   struct Hypothesis {
     Eigen::Isometry3d T_map_odom;
-    double score;
+    double score;   // sum over all surfels heard
+  };
+  struct Hypotheses {
+    std::vector<Hypothesis> places;
+    double num_surfels = 0;   // heard
+    double score(const Hypothesis& h) const { return h.score / num_surfels; }   // a surfel
+    const Hypothesis& best() const;
+    /// Of those that are another place than that.
+    double best_score_elsewhere(const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor) const;
   };
   void look_anew();
   void propose_places(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
   void compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
-  double score_elsewhere(const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor) const;
+  void hear(Hypotheses& hypotheses, const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
+  void look_farther(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
+  bool is_farther(double score_near_start, const Eigen::Isometry3d& T_odom_sensor);
 
   PriorMatch word_of(const JointResult& match, std::size_t num_surfels) const;
   Matrix6d predicted_covariance(const Eigen::Isometry3d& T_odom_sensor) const;
@@ -62,12 +74,13 @@ class PriorTracker {
   bool heard_last_ = false;                        // whether it held the scan then
   Matrix6d covariance_ = Matrix6d::Zero();         // of T_map_odom * T_odom_last, tangent in sensor axes
   PriorSurfels::Weights prior_weights_ = PriorSurfels::unweighted;
-  std::vector<Hypothesis> hypotheses_;             // where the drive may have begun; the first is the one given
+  Hypotheses hypotheses_;                          // where the drive may have begun; the first is the one given
+  Hypotheses farther_;                             // where else, should that be wrong by far
   double unknown_way_m_ = 0;                       // while it is not located
   bool located_ = true;
+  bool started_elsewhere_ = false;
   double usual_score_ = 0.1;   // a surfel, where the drive was
   int num_heard_ = 0;
-  std::size_t num_surfels_heard_ = 0;
 };
 
 }  // namespace priormap

@@ -127,6 +127,16 @@ street::World quarter() {
   return world;
 }
 
+constexpr street::Laser coarse{.rings = 32, .columns = 700};
+
+Scan scan_of(const street::World& world, const Eigen::Isometry3d& T_map_sensor, std::size_t index) {
+  Scan scan;
+  scan.index = index;
+  scan.stamp_s = 0.1 * static_cast<double>(index);
+  scan.points = street::scan(world, T_map_sensor, coarse, static_cast<unsigned>(index));
+  return scan;
+}
+
 /// For forty scans a recording shows another street, and when its own is back, that is round a corner, forty metres from where the motion before would have led.
 TEST_F(Street, ADriveIsFoundAgainRoundACornerBeyondScansOfElsewhere) {
   constexpr std::size_t before = 14, elsewhere = 40, after = 35, most_until_anchored = 30;
@@ -136,13 +146,7 @@ TEST_F(Street, ADriveIsFoundAgainRoundACornerBeyondScansOfElsewhere) {
   const auto T = [](std::size_t k) {
     return k < before + elsewhere ? street::pose(-20 + 1.0 * static_cast<double>(k), 0.3, 1.7, 0) : street::pose(40.3, 15 + 0.8 * static_cast<double>(k - before - elsewhere), 1.7, 0.5 * std::numbers::pi);
   };
-  const auto scan_at = [&](std::size_t k) {
-    Scan scan;
-    scan.index = k;
-    scan.stamp_s = 0.1 * static_cast<double>(k);
-    scan.points = street::scan(is_elsewhere(k) ? other : own, T(k), {}, static_cast<unsigned>(k));
-    return scan;
-  };
+  const auto scan_at = [&](std::size_t k) { return scan_of(is_elsewhere(k) ? other : own, T(k), k); };
   Mapper mapper(MapperOptions::preset("default"), NearTiles(tiles, MapFrame::local(), 150), {T(0), T(0).inverse() * T(1)}, 1);
   for (std::size_t k = 0; k < before + elsewhere + after; ++k) {
     const Verdict verdict = mapper.step(scan_at(k)).verdict;
@@ -155,6 +159,32 @@ TEST_F(Street, ADriveIsFoundAgainRoundACornerBeyondScansOfElsewhere) {
     if (scans[k].verdict == Verdict::anchored) {
       EXPECT_LT(position_error(scans[k], T(k)), 0.15) << k;
     }
+}
+
+/// A drive along `quarter`, whose start the user puts 20 m off and facing the other way.
+std::vector<MappedScan> drive_from_a_wrong_start(const street::World& prior) {
+  constexpr std::size_t num_scans = 50;
+  const street::World own = quarter();
+  const test::TiledPoints tiles(street::sample(prior, 0.5, 0.1f), 50);
+  const auto T = [](std::size_t k) { return street::pose(-20 + 1.0 * static_cast<double>(k), 0.3, 1.7, 0); };
+  const auto scan_at = [&](std::size_t k) { return scan_of(own, T(k), k); };
+  Mapper mapper(MapperOptions::preset("default"), NearTiles(tiles, MapFrame::local(), 150), {street::pose(-4, 12, 1.9, 2.9), T(0).inverse() * T(1)}, 1);
+  for (std::size_t k = 0; k < num_scans; ++k) mapper.step(scan_at(k));
+  std::vector<MappedScan> scans = mapper.finish(scan_at);
+  for (MappedScan& scan : scans) scan.T_map_sensor = T(scan.index).inverse() * scan.T_map_sensor;   // its error
+  return scans;
+}
+
+TEST_F(Street, AStartThatIsWrongByFarIsFound) {
+  for (const MappedScan& scan : drive_from_a_wrong_start(quarter())) {
+    EXPECT_EQ(scan.verdict, Verdict::anchored) << scan.index;
+    EXPECT_LT(scan.T_map_sensor.translation().norm(), 0.15) << scan.index;
+  }
+}
+
+/// The user is believed rather than a place that fits no better than any, but nothing is called anchored.
+TEST_F(Street, AStartThatFitsNowhereStaysAsItIs) {
+  for (const MappedScan& scan : drive_from_a_wrong_start(street::town(80, 3))) EXPECT_NE(scan.verdict, Verdict::anchored) << scan.index;
 }
 
 TEST_F(Street, HeightsAreNoSurerThanPriorAndStartAgree) {
