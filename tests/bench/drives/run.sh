@@ -130,8 +130,9 @@ own_street() {
 # How many scans after a kidnapping the first is called lost, how many after its end the first is anchored.
 kidnap_note() {
   awk -F, 'NR == FNR { if (FNR > 1 && $NF == 1) { if (!last) first = $1; last = $1 }; next }
-           FNR > 1 && $1 >= first && $NF == "lost" && lost == "" { lost = $1 - first + 1 }
-           FNR > 1 && $1 > last && $NF == "anchored" && back == "" { back = $1 - last }
+           FNR == 1 { for (i = 1; i <= NF; ++i) if ($i == "verdict") v = i; next }
+           $1 >= first && $v == "lost" && lost == "" { lost = $1 - first + 1 }
+           $1 > last && $v == "anchored" && back == "" { back = $1 - last }
            END { if (last) printf " (lost in scan %s, anchored in scan %s after it)", lost == "" ? "none" : lost, back == "" ? "none" : back }' "$1" "$2"
 }
 
