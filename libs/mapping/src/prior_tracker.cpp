@@ -108,15 +108,20 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
   if (++num_heard_ >= enough) located_ = located_ || (fits && score - hypotheses_.best_score_elsewhere(T_map_odom_ * T_odom_sensor, T_odom_sensor) > clear_gain);
   if (num_heard_ % enough == 0 && is_farther(score, T_odom_sensor)) {
     score = hypotheses_.score(hypotheses_.places.front());
-  } else if (num_heard_ % enough == 0 && located_ && score < least_score) {
+  } else if (num_heard_ % enough == 0 && unknown_way_m_ == 0 && score < least_score) {
     look_farther(scan, T_odom_sensor, map);
   }
   const bool in_vain = num_heard_ >= enough && !located_ && !fits;
   if (num_heard_ < options_.start_keyframes && !in_vain) return;
   hypotheses_ = {};
   farther_ = {};
-  if (!located_) return look_anew();
-  usual_score_ = score;
+  if (located_) {
+    usual_score_ = score;
+  } else {
+    T_map_odom_ = T_map_odom_lost_;
+    lost_step_m_ = std::min(2 * lost_step_m_, options_.keyframe_m);   // what was not found may not be there for long
+    look_anew();
+  }
 }
 
 /// Where the start that the user gave does not fit at all, it may be wrong by more than it should be.
@@ -144,7 +149,10 @@ bool PriorTracker::is_farther(double score_near_start, const Eigen::Isometry3d& 
 }
 
 void PriorTracker::begin_anew(double unknown_way_m) {
+  constexpr double step_m = 3;
   unknown_way_m_ = unknown_way_m;
+  T_map_odom_lost_ = T_map_odom_;
+  lost_step_m_ = std::min(step_m, options_.search_step_m);
   look_anew();
 }
 
@@ -159,7 +167,7 @@ void PriorTracker::look_anew() {
 
 void PriorTracker::exchange(StateArchive& archive) {
   if (prior_) archive(*prior_);
-  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_.places, hypotheses_.num_surfels, farther_.places, farther_.num_surfels, unknown_way_m_, located_, started_elsewhere_, usual_score_, num_heard_);
+  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_.places, hypotheses_.num_surfels, farther_.places, farther_.num_surfels, unknown_way_m_, T_map_odom_lost_, lost_step_m_, located_, started_elsewhere_, usual_score_, num_heard_);
 }
 
 void PriorTracker::go_on(const Eigen::Isometry3d& T_odom_sensor) {
@@ -169,9 +177,8 @@ void PriorTracker::go_on(const Eigen::Isometry3d& T_odom_sensor) {
 
 bool PriorTracker::asks() const {
   if (!prior_ || !T_odom_last_) return prior_.has_value();
-  constexpr double lost_step_m = 3;
   const bool is_held = num_heard_ >= options_.start_keyframes && heard_last_;
-  return way_since_asked_m_ >= (is_held ? options_.keyframe_m : located_ ? options_.search_step_m : std::min(lost_step_m, options_.search_step_m));
+  return way_since_asked_m_ >= (is_held ? options_.keyframe_m : located_ ? options_.search_step_m : lost_step_m_);
 }
 
 PriorMatch PriorTracker::word_of(const JointResult& match, std::size_t num_surfels) const {

@@ -76,7 +76,9 @@ class PriorTracker {
   PriorSurfels::Weights prior_weights_ = PriorSurfels::unweighted;
   Hypotheses hypotheses_;                          // where the drive may have begun; the first is the one given
   Hypotheses farther_;                             // where else, should that be wrong by far
-  double unknown_way_m_ = 0;                       // while it is not located
+  double unknown_way_m_ = 0;                       // since the odometry began anew: how far from there the drive may be; 0: it did not
+  Eigen::Isometry3d T_map_odom_lost_ = Eigen::Isometry3d::Identity();   // there: around it is looked for
+  double lost_step_m_ = 0;                         // way between scans that are matched to the prior while it is not located
   bool located_ = true;
   bool started_elsewhere_ = false;
   double usual_score_ = 0.1;   // a surfel, where the drive was
