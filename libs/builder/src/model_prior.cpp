@@ -32,7 +32,7 @@
 namespace priormap {
 namespace {
 
-constexpr std::size_t batch_size = 512;   // buildings in memory at a time
+constexpr std::size_t batch_size = 512, batch_vertices = 2'000'000;   // what is in memory at a time: buildings, and one more than fills it
 
 void read_models(const std::filesystem::path& file, const BuildingModelOptions& options, const BuildingModelSink& sink) {
   const std::string extension = file.extension();
@@ -227,6 +227,7 @@ class Sampling {
         points += of_building[i];
       }
       batch_.clear();
+      num_vertices_ = 0;
     };
     read_models(file.path, reader_options(model_options_), [&](BuildingModel&& model) {
       if (model.unresolved_references > 0) {
@@ -236,8 +237,9 @@ class Sampling {
       if (model.polygons.empty()) return;
       report.polygons += static_cast<std::size_t>(std::ranges::count(model.polygons, false, &ModelPolygon::repeated));
       frames_.to_prior(model, file.path.string());
+      for (const ModelPolygon& polygon : model.polygons) for_each_ring(polygon.polygon, [&](const Ring3& ring) { num_vertices_ += ring.size(); });
       batch_.push_back(std::move(model));
-      if (batch_.size() == batch_size) finish_batch();
+      if (batch_.size() == batch_size || num_vertices_ > batch_vertices) finish_batch();
     });
     finish_batch();
     return points;
@@ -253,6 +255,7 @@ class Sampling {
   int threads_;
   std::uint32_t num_models_ = 0;   ///< sampled before the batch; the survey counted in the same order
   std::vector<BuildingModel> batch_;
+  std::size_t num_vertices_ = 0;     ///< of the batch
 };
 
 PriorSource source_of(const HashedFile& file, const ModelSourceFrame& frame, const PriorOptions& prior_options, const ModelOptions& model_options) {
