@@ -328,6 +328,15 @@ TEST_F(OsmFootprints, CompressedFilesTellOfRemarksAndDeletionsToo) {
   EXPECT_TRUE(warnings.empty());
 }
 
+TEST_F(OsmFootprints, WhatWasDeletedIsNotedWhereverItStandsInTheFile) {
+  const std::string deleted = corners + house(1, "5", " action='delete'");
+  const std::size_t at = osm(deleted).find("action") + std::string("<!---->").size();
+  for (const std::size_t before_boundary : {0, 1, 3, 6, 7, 8, 15, 16, 17, 30}) {
+    const std::string padding = "<!--" + std::string((std::size_t{1} << 18) - at - before_boundary, '.') + "-->";
+    EXPECT_TRUE(read_osm_footprints({write("town.osm", osm(padding + deleted))}, 2, diagnostics_).empty()) << before_boundary;
+  }
+}
+
 TEST_F(OsmFootprints, DamagedCompressionIsNamed) {
   const std::string packed = bzip2(osm(corners + house(1, "5")));
   std::string odd = packed;
