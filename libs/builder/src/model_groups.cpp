@@ -34,6 +34,7 @@ void ModelGroups::add(const BuildingModel& model, const std::string& file) {
 }
 
 bool ModelGroups::finish() {
+  if (finder_.is_one_group()) return false;   // and none need know where it lies
   const auto area_of = [&](std::uint32_t number, const PlaceBounds& bounds) {
     const Crs& crs = crs_[number];
     const Bounds2 b = bounds.of(crs);

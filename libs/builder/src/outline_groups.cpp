@@ -122,6 +122,12 @@ std::pair<OutlineGroup, PlaceBounds> GroupFinder::take_group() {
   return {std::move(group), bounds};
 }
 
+bool GroupFinder::is_one_group() const {
+  GroupFinder others = *this;
+  if (!cells_.empty()) others.take_group();
+  return others.cells_.empty();
+}
+
 std::vector<OutlineGroup> GroupFinder::finish(const std::function<std::optional<LonLatArea>(std::uint32_t file, const PlaceBounds&)>& area_of) {
   std::vector<OutlineGroup> somewhere, nowhere;
   std::vector<LonLatArea> areas;

@@ -50,6 +50,8 @@ class GroupFinder {
  public:
   /// What is far larger than any building says nothing of where the data lie, and is in no group. @param place  of it, by which `cell_at` finds its cell
   void add(std::uint32_t file, const Crs& crs, const PlaceBounds& bounds, const Eigen::Vector2d& place, const std::string& id);
+  /// Whether there is one group at most, by the cells alone.
+  bool is_one_group() const;
   /// Once. The largest first.
   /// @param area_of  where a rectangle of a file lies
   std::vector<OutlineGroup> finish(const std::function<std::optional<LonLatArea>(std::uint32_t file, const PlaceBounds&)>& area_of);
