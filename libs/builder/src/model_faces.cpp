@@ -89,24 +89,28 @@ std::map<SolidKey, Solid> solids_of(const std::vector<ModelFace>& faces) {
   return solids;
 }
 
-/// A party wall that two solids refer to alike looks into one of them. Turned over it brings that one nearer to being closed.
+/// A party wall that two solids refer to alike looks into one of them: turned over where that closes the solid. Of one that stays open nothing can be told.
 /// @param shared  by face
 void turn_shared_faces(std::vector<ModelFace>& faces, const std::vector<bool>& shared) {
   if (std::ranges::find(shared, true) == shared.end()) return;
-  std::map<SolidKey, Solid> solids = solids_of(faces);
-  constexpr int passes = 4;   // a wall in pieces, of which some are turned already
-  bool turned = true;
-  for (int pass = 0; pass < passes && std::exchange(turned, false); ++pass)
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-      if (!shared[i]) continue;
-      const Eigen::Vector3d twice = newell_normal(faces[i].polygon);
-      Eigen::Vector3d& sum = solids[faces[i].solid].twice_vector_area;
-      constexpr double surely = 1.5;   // twice where all others are closed but for it
-      if (!(sum.dot(twice) > surely * twice.squaredNorm())) continue;
-      sum -= 2 * twice;
-      turn_over(faces[i]);
-      turned = true;
-    }
+  std::map<SolidKey, std::vector<std::size_t>> shared_of;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    if (shared[i]) shared_of[faces[i].solid].push_back(i);
+  for (auto& [key, solid] : solids_of(faces)) {
+    std::set<std::size_t> turned;
+    constexpr int passes = 4;   // a wall in pieces, of which some are turned already
+    for (int pass = 0; pass < passes && !solid.is_closed(); ++pass)
+      for (const std::size_t i : shared_of[key]) {
+        const bool is_turned = turned.contains(i);
+        const Eigen::Vector3d twice = (is_turned ? -1 : 1) * newell_normal(faces[i].polygon);
+        if (!(solid.twice_vector_area.dot(twice) > twice.squaredNorm())) continue;   // nearer to closed as it is
+        solid.twice_vector_area -= 2 * twice;
+        if (is_turned) turned.erase(i);
+        else turned.insert(i);
+      }
+    if (!solid.is_closed()) continue;
+    for (const std::size_t i : turned) turn_over(faces[i]);
+  }
 }
 
 void turn_solids_outward(std::vector<ModelFace>& faces, const std::string& feature, Diagnostics& diagnostics) {

@@ -25,7 +25,7 @@ struct ModelFace {
 };
 
 /// The faces of a model in metres. Defects are counted by val3dity's codes; polygons without area are left out. Solids whose
-/// faces look inward are turned over (307), after faces that several solids share were turned as close them, then single roofs that look down. Faces that the file leaves unnamed are walls, roofs or ground surfaces by their slope.
+/// faces look inward are turned over (307), after faces that several solids share were turned where that closes one, then single roofs that look down. Faces that the file leaves unnamed are walls, roofs or ground surfaces by their slope.
 std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diagnostics);
 
 /// Those whose faces enclose a space. One with a closure, which is not there, does not.

@@ -60,6 +60,18 @@ TEST(ModelFaces, AWallThatTwoSolidsShareLooksOutOfEach) {
   }
 }
 
+TEST(ModelFaces, ASharedFaceOfAnOpenSolidStaysAsItIsStated) {
+  // A roof without floor and walls below a canopy that shares a piece of it.
+  BuildingModel model = model_of(box({0, 0, 0}, {20, 20, 5}, 1), box({0, 0, 4}, {3, 3, 5}, 2));
+  model.polygons.erase(model.polygons.begin());
+  ModelPolygon piece = model.polygons[5 + 1];
+  piece.solid = 1;
+  piece.shared = model.polygons[5 + 1].shared = true;
+  model.polygons.push_back(piece);
+  Diagnostics diagnostics;
+  EXPECT_DOUBLE_EQ(model_faces(model, diagnostics).back().normal.z(), 1);
+}
+
 TEST(ModelFaces, ASolidThatLooksInwardIsTurnedAndNotTheOneBesideIt) {
   BuildingModel model = model_of(box({0, 0, 0}, {10, 10, 5}, 1), box({30, 0, 0}, {40, 10, 5}, 2));
   for (std::size_t i = 0; i < number_of_faces; ++i) model.polygons[i] = turned(model.polygons[i]);
