@@ -127,8 +127,12 @@ class References {
                                           [&](const GeometryItems& home, std::size_t index, bool flip) { follow(reference, home, index, flip); });
       if (!known) ++unresolved_;
     }
-    for (std::size_t i = 0; i < geometry_.items.size(); ++i)
-      if (geometry_.items[i].reference.empty()) put(std::move(geometry_.items[i]), said_.contains(i) ? said_[i] : SaidOfPolygon{});
+    const SaidOfPolygon nothing;
+    for (std::size_t i = 0; i < geometry_.items.size(); ++i) {
+      if (!geometry_.items[i].reference.empty()) continue;
+      const auto said = said_.find(i);
+      put(std::move(geometry_.items[i]), said == said_.end() ? nothing : said->second);
+    }
     return std::move(resolved_);
   }
   std::size_t unresolved() const { return unresolved_; }
@@ -163,7 +167,8 @@ class References {
       item.context.thematic = true;
     }
     if (item.context.flip) reverse(item.polygon.polygon);
-    const bool states_for_others = item.context.solid == 0 && !said.solids.empty();
+    if (said.solids.empty()) return resolved_.push_back(std::move(item));
+    const bool states_for_others = item.context.solid == 0;
     item.polygon.shared = said.solids.size() > (states_for_others ? 1 : 0);
     if (!states_for_others) resolved_.push_back(item);
     bool is_first = states_for_others;
