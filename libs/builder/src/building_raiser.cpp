@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "outline_boxes.hpp"
+
 namespace priormap {
 namespace {
 
@@ -14,11 +16,13 @@ bool contains(const std::vector<Polygon2>& polygons, double x, double y) {
 }
 
 /// 70th percentile: above it lie trees that overhang, masts and the spread of a pitched roof; below it the cells that mix roof and street.
-std::optional<double> surface_z(const ProjectedFootprint& footprint, const HeightRaster& surface) {
+std::optional<double> surface_z(const ProjectedFootprint& footprint, const HeightRaster& surface, double cell_size_m) {
+  constexpr double cells_of_box = 32;   // looking for the cells of a box costs as much as a few rows of them
   std::vector<double> heights;
-  surface.for_each_inside(footprint.bounds, [&](double x, double y, double z) {
-    if (contains(footprint.polygons, x, y)) heights.push_back(z);
-  });
+  for (const Bounds2& box : boxes_over(footprint.polygons, footprint.bounds, cells_of_box * cell_size_m))
+    surface.for_each_inside(box, [&](double x, double y, double z) {
+      if (contains(footprint.polygons, x, y)) heights.push_back(z);
+    });
   if (heights.empty()) {  // smaller than a cell
     const Ring2& ring = footprint.polygons.front().exterior;
     Eigen::Vector2d middle = Eigen::Vector2d::Zero();
@@ -106,7 +110,7 @@ Building BuildingRaiser::raise(std::uint32_t footprint, Diagnostics& diagnostics
 
 std::optional<double> BuildingRaiser::surface_above(const ProjectedFootprint& own, const GroundModel::Under& ground) const {
   if (!surface_ || own.footprint.attributes.height_m) return std::nullopt;
-  const std::optional<double> z = surface_z(own, *surface_);
+  const std::optional<double> z = surface_z(own, *surface_, surface_cell_m_);
   return z ? std::optional(*z - ground.median_z) : std::nullopt;
 }
 

@@ -25,7 +25,7 @@ struct Building {
 class BuildingRaiser {
  public:
   BuildingRaiser(const ProjectedFootprints& footprints, const PartAssignment& parts, const OutlineFrames& frames, const OutlineOptions& options)
-      : footprints_(footprints), parts_(parts), ground_(frames.ground), surface_(frames.surface), options_(options) {}
+      : footprints_(footprints), parts_(parts), ground_(frames.ground), surface_(frames.surface), surface_cell_m_(surface_ ? surface_->cell_size() : 0), options_(options) {}
 
   Building raise(std::uint32_t footprint, Diagnostics& diagnostics) const;
 
@@ -40,6 +40,7 @@ class BuildingRaiser {
   const PartAssignment& parts_;
   GroundModel ground_;
   std::optional<HeightRaster> surface_;
+  double surface_cell_m_;
   const OutlineOptions& options_;
 };
 

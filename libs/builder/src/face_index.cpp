@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -33,13 +34,33 @@ Eigen::Vector3d middle_of(const Ring3& ring) {
 }  // namespace
 
 void FaceIndex::add(std::uint32_t model, const std::vector<ModelFace>& faces) {
-  const std::set<int> closed = closed_parts(faces);
-  std::map<int, std::uint32_t> solid_of_part;
+  const std::set<SolidKey> closed = closed_solids(faces);
+  std::map<SolidKey, std::uint32_t> solid_of_key;
+  const auto first_face = static_cast<std::uint32_t>(faces_.size());
   for (const ModelFace& face : faces) {
     if (face.surface_class == SurfaceClass::closure) continue;
-    const auto [solid, is_new] = solid_of_part.try_emplace(face.part, static_cast<std::uint32_t>(solids_.size()));
-    if (is_new) solids_.push_back({model, face.part, closed.contains(face.part)});
+    const auto [solid, is_new] = solid_of_key.try_emplace(face.solid, static_cast<std::uint32_t>(solids_.size()));
+    if (is_new) solids_.push_back({model, face.solid, closed.contains(face.solid)});
     add(face, solid->second);
+  }
+  if (std::ranges::any_of(faces, &ModelFace::repeated)) find_repetitions(first_face);
+}
+
+void FaceIndex::find_repetitions(std::uint32_t first_face) {
+  const auto sorted_vertices = [&](const IndexedFace& face) {
+    std::vector<std::array<int, 3>> vertices;
+    for (std::uint32_t v = face.first; v < face.end; ++v) vertices.push_back({vertices_mm_[v].x(), vertices_mm_[v].y(), vertices_mm_[v].z()});
+    std::ranges::sort(vertices);
+    const auto repeated = std::ranges::unique(vertices);   // rings are closed, and may begin anywhere
+    vertices.erase(repeated.begin(), repeated.end());
+    return vertices;
+  };
+  std::map<std::vector<std::array<int, 3>>, std::vector<std::uint32_t>> shapes;
+  for (std::uint32_t i = first_face; i < faces_.size(); ++i) {
+    std::vector<std::uint32_t>& alike = shapes[sorted_vertices(faces_[i])];
+    const auto same = std::ranges::find_if(alike, [&](std::uint32_t other) { return faces_[other].normal.dot(faces_[i].normal) > 0; });
+    if (same == alike.end()) alike.push_back(i);
+    else faces_[i].shape = *same;
   }
 }
 
@@ -53,7 +74,7 @@ void FaceIndex::add(const ModelFace& face, std::uint32_t solid) {
   }
   if (!((box.min() - origin_).cwiseAbs().maxCoeff() < farthest_m && (box.max() - origin_).cwiseAbs().maxCoeff() < farthest_m)) return;
 
-  IndexedFace indexed{face.normal.cast<float>(), static_cast<std::uint32_t>(vertices_mm_.size()), 0, solid, face.repeated};
+  IndexedFace indexed{face.normal.cast<float>(), static_cast<std::uint32_t>(vertices_mm_.size()), 0, solid, static_cast<std::uint32_t>(faces_.size()), face.repeated};
   const auto add_vertex = [&](const Eigen::Vector3d& p) { vertices_mm_.push_back((1e3 * (p - origin_)).array().round().cast<int>()); };
   const auto add_ring = [&](const Ring3& ring) {
     for (const Eigen::Vector3d& p : ring) add_vertex(p);
@@ -75,7 +96,10 @@ struct FaceIndex::Candidate {
   const IndexedFace* face;
   Eigen::Vector3d normal, anchor;       // from the index's origin
   Eigen::Vector2d low, high;            // of its plan
-  bool same_solid, repeats, closed;     // repeats: built with a later part of the same building; closed: of a solid that encloses a space
+  bool same_body;   // of the same solid, or of the same part, which one of the two bounds without a solid
+  bool is_own;      // of the same body, or of a solid that has a face in common with it: the two sides of a sheet may be of both
+  bool repeats;     // built with a later solid of the same building
+  bool closed;      // of a solid that encloses a space
 };
 
 std::vector<FaceIndex::Candidate> FaceIndex::candidates(std::uint32_t model, const ModelFace& face) const {
@@ -84,8 +108,10 @@ std::vector<FaceIndex::Candidate> FaceIndex::candidates(std::uint32_t model, con
   for (const std::uint32_t i : index_.meeting(grown({box.min().x(), box.min().y(), box.max().x(), box.max().y()}, touching_m))) {
     const IndexedFace& other = faces_[i];
     const Solid& solid = solids_[other.solid];
-    const bool same_model = solid.model == model, same_solid = same_model && solid.part == face.part;
-    Candidate candidate{&other, other.normal.cast<double>(), vertex(other.first), {}, {}, same_solid, same_model && solid.part > face.part && !other.repeated, solid.closed};
+    const bool same_model = solid.model == model, same_part = same_model && solid.key.part == face.solid.part, in_solids = solid.key.solid != 0 && face.solid.solid != 0;
+    const bool same_body = same_part && (!in_solids || solid.key.solid == face.solid.solid);
+    const bool is_later = same_model && (solid.key.part > face.solid.part || (same_part && in_solids && solid.key.solid > face.solid.solid));
+    Candidate candidate{&other, other.normal.cast<double>(), vertex(other.first), {}, {}, same_body, false, is_later && !other.repeated, solid.closed};
     const bool may_touch = !face.planar || std::abs(candidate.normal.dot(face.normal)) > same_direction;
     if (!may_touch && !candidate.closed) continue;
     candidate.low = candidate.high = candidate.anchor.head<2>();
@@ -95,6 +121,13 @@ std::vector<FaceIndex::Candidate> FaceIndex::candidates(std::uint32_t model, con
     }
     found.push_back(candidate);
   }
+  std::set<std::uint32_t> own_shapes;
+  for (const Candidate& candidate : found)
+    if (candidate.same_body) own_shapes.insert(candidate.face->shape);
+  std::set<std::uint32_t> with_own_shapes;
+  for (const Candidate& candidate : found)
+    if (own_shapes.contains(candidate.face->shape)) with_own_shapes.insert(candidate.face->solid);
+  for (Candidate& candidate : found) candidate.is_own = candidate.same_body || with_own_shapes.contains(candidate.face->solid);
   std::ranges::stable_sort(found, {}, [](const Candidate& candidate) { return candidate.face->solid; });
   return found;
 }
@@ -109,12 +142,12 @@ class FaceIndex::Spot {
     in_front_ = place_ + touching_m * normal;
   }
 
-  /// Whether the other face lies on this spot: looking the other way, or, of a later part, the same way.
+  /// Whether the other face lies on this spot: looking the other way, or, of a later solid, the same way.
   bool is_covered_by(const Candidate& candidate) const {
     const double cosine = candidate.normal.dot(normal_), in_front_of_it = candidate.normal.dot(place_ - candidate.anchor);
     if (cosine > same_direction) return candidate.repeats && std::abs(in_front_of_it) < same_place_m && is_on(candidate);
     // The back of a thin wall looks the other way too, and touches nothing.
-    const double least = candidate.same_solid ? -same_place_m : -touching_m;
+    const double least = candidate.is_own ? -same_place_m : -touching_m;
     return cosine < -same_direction && least < in_front_of_it && in_front_of_it < touching_m && is_on(candidate);
   }
 
@@ -171,7 +204,7 @@ void FaceIndex::remove_hidden(std::uint32_t model, const ModelFace& face, std::v
   const auto is_hidden_by = [](const Spot& spot, std::span<const Candidate> solid) {
     const Candidate& any = solid.front();
     const bool covered = std::ranges::any_of(solid, [&](const Candidate& candidate) { return spot.is_covered_by(candidate); });
-    if (!any.same_solid) return covered || (any.closed && spot.is_held_by(solid));
+    if (!any.same_body) return covered || (any.closed && spot.is_held_by(solid));
     // Both sides of a sheet, such as eaves, look away from each other too: in front of blocks that touch there is no air.
     return covered && (any.closed ? spot.is_held_by(solid) : spot.is_upright());
   };

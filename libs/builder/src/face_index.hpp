@@ -10,8 +10,8 @@
 namespace priormap {
 
 /// The faces of all building models, to find the spots of a face that others hide: where another face touches it looking the other way (walls that buildings share, a
-/// roof under what stands on it), and where the space right in front lies inside another solid, be it a building or a part of the same. Where parts of a building
-/// state one spot twice, the later keeps it: parts come after the body and are drawn in more detail. A polygon that several parts state bounds the solid of each,
+/// roof under what stands on it), and where the space right in front lies inside another solid, be it of another building or of the same. Where solids of a building
+/// state one spot twice, the later keeps it: parts come after the body and are drawn in more detail. A polygon that several solids state bounds each of them,
 /// and is hidden by none of its repetitions: they are not built.
 /// Const members are thread-safe after `finish`.
 class FaceIndex {
@@ -29,18 +29,20 @@ class FaceIndex {
  private:
   struct Solid {
     std::uint32_t model;
-    int part;
+    SolidKey key;
     bool closed;   ///< its faces enclose a space
   };
   struct IndexedFace {
     Eigen::Vector3f normal;
     std::uint32_t first, end;   ///< of its vertices; rings follow each other, each closed by its first vertex
     std::uint32_t solid;
+    std::uint32_t shape;        ///< the first face of the model of the same vertices that looks the same way
     bool repeated;              ///< as ModelFace's
   };
   struct Candidate;
   class Spot;
   void add(const ModelFace& face, std::uint32_t solid);
+  void find_repetitions(std::uint32_t first_face);
   Eigen::Vector3d vertex(std::uint32_t i) const { return 1e-3 * vertices_mm_[i].cast<double>(); }
   std::vector<Candidate> candidates(std::uint32_t model, const ModelFace& face) const;
 

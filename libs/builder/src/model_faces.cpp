@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <priormap/pointcloud/slope.hpp>
 
@@ -59,7 +60,7 @@ void turn_over(ModelFace& face) {
   face.normal = -face.normal;
 }
 
-/// The faces of one part of a model as a solid.
+/// Sums over the faces of a solid.
 struct Solid {
   void add(const ModelFace& face, const Eigen::Vector3d& anchor) {
     const Eigen::Vector3d twice = newell_normal(face.polygon);
@@ -82,19 +83,42 @@ struct Solid {
   double twice_area = 0, six_volumes = 0;
 };
 
-/// By part.
-std::map<int, Solid> solids_of(const std::vector<ModelFace>& faces) {
-  std::map<int, Solid> solids;
-  for (const ModelFace& face : faces) solids[face.part].add(face, faces.front().polygon.exterior.front());
+std::map<SolidKey, Solid> solids_of(const std::vector<ModelFace>& faces) {
+  std::map<SolidKey, Solid> solids;
+  for (const ModelFace& face : faces) solids[face.solid].add(face, faces.front().polygon.exterior.front());
   return solids;
 }
 
+/// A party wall that two solids refer to alike looks into one of them: turned over where that closes the solid. Of one that stays open nothing can be told.
+/// @param shared  by face
+void turn_shared_faces(std::vector<ModelFace>& faces, const std::vector<bool>& shared) {
+  if (std::ranges::find(shared, true) == shared.end()) return;
+  std::map<SolidKey, std::vector<std::size_t>> shared_of;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    if (shared[i]) shared_of[faces[i].solid].push_back(i);
+  for (auto& [key, solid] : solids_of(faces)) {
+    std::set<std::size_t> turned;
+    constexpr int passes = 4;   // a wall in pieces, of which some are turned already
+    for (int pass = 0; pass < passes && !solid.is_closed(); ++pass)
+      for (const std::size_t i : shared_of[key]) {
+        const bool is_turned = turned.contains(i);
+        const Eigen::Vector3d twice = (is_turned ? -1 : 1) * newell_normal(faces[i].polygon);
+        if (!(solid.twice_vector_area.dot(twice) > twice.squaredNorm())) continue;   // nearer to closed as it is
+        solid.twice_vector_area -= 2 * twice;
+        if (is_turned) turned.erase(i);
+        else turned.insert(i);
+      }
+    if (!solid.is_closed()) continue;
+    for (const std::size_t i : turned) turn_over(faces[i]);
+  }
+}
+
 void turn_solids_outward(std::vector<ModelFace>& faces, const std::string& feature, Diagnostics& diagnostics) {
-  for (const auto& [part, solid] : solids_of(faces)) {
+  for (const auto& [key, solid] : solids_of(faces)) {
     if (!solid.looks_inward()) continue;
     diagnostics.add(DiagnosticCode::polygon_wrong_orientation, feature, "a solid whose faces look inward");
     for (ModelFace& face : faces)
-      if (face.part == part) turn_over(face);
+      if (face.solid == key) turn_over(face);
   }
 }
 
@@ -112,13 +136,14 @@ void name_and_turn(ModelFace& face, const BuildingModel& model, Diagnostics& dia
 
 std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diagnostics) {
   std::vector<ModelFace> faces;
+  std::vector<bool> shared;
   faces.reserve(model.polygons.size());
   double total_m2 = 0;
   Diagnostics counted_already;
   for (const ModelPolygon& stated : model.polygons) {
     Diagnostics& counts = stated.repeated ? counted_already : diagnostics;
     if (!stated.closed) counts.add(DiagnosticCode::ring_not_closed, model.id, "a ring does not repeat its first point");
-    ModelFace face{stated.polygon, Eigen::Vector3d::Zero(), stated.surface_class, stated.part, stated.repeated};
+    ModelFace face{stated.polygon, Eigen::Vector3d::Zero(), stated.surface_class, {stated.part, stated.solid}, stated.repeated};
     if (!clean(face.polygon.exterior, model.id, counts)) continue;
     std::erase_if(face.polygon.holes, [&](Ring3& hole) { return !clean(hole, model.id, counts); });
     const Eigen::Vector3d twice_area = newell_normal(face.polygon);
@@ -137,18 +162,22 @@ std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diag
     face.planar = deviation <= planarity_m;
     if (!face.planar) counts.add(DiagnosticCode::non_planar_polygon, model.id, std::to_string(deviation) + " m from its plane");
     faces.push_back(std::move(face));
+    shared.push_back(stated.shared);
   }
-  if (model.kind != ModelKind::terrain) turn_solids_outward(faces, model.id, diagnostics);
+  if (model.kind != ModelKind::terrain) {
+    turn_shared_faces(faces, shared);
+    turn_solids_outward(faces, model.id, diagnostics);
+  }
   for (ModelFace& face : faces) name_and_turn(face, model, face.repeated ? counted_already : diagnostics);
   return faces;
 }
 
-std::set<int> closed_parts(const std::vector<ModelFace>& faces) {
-  std::set<int> closed;
-  for (const auto& [part, solid] : solids_of(faces))
-    if (solid.is_closed()) closed.insert(part);
+std::set<SolidKey> closed_solids(const std::vector<ModelFace>& faces) {
+  std::set<SolidKey> closed;
+  for (const auto& [key, solid] : solids_of(faces))
+    if (solid.is_closed()) closed.insert(key);
   for (const ModelFace& face : faces)
-    if (face.surface_class == SurfaceClass::closure) closed.erase(face.part);
+    if (face.surface_class == SurfaceClass::closure) closed.erase(face.solid);
   return closed;
 }
 

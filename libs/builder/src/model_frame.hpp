@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Core>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,11 +18,15 @@ struct ModelSourceFrame {
   CoordinateOperation operation;
 };
 
+/// The place, as the file writes it, by which the order of axes and the operation of an srsName are judged: by srsName and file.
+using DecidingPlaces = std::map<std::pair<std::string, std::string>, Eigen::Vector3d>;
+
 /// The way from each srsName to the prior's CRS, which the first building decides where the user does not. Not thread-safe.
 class ModelFrames {
  public:
+  /// @param place  of the first building, as the file writes it  @param deciding  where there is none, the first building of an srsName decides
   /// @throws CrsError when the building's srsName is missing or unknown and --source-crs does not help.
-  ModelFrames(const PriorOptions& options, const BuildingModel& first, const std::string& file, const Events& events);
+  ModelFrames(const PriorOptions& options, const std::string& srs_name, const Eigen::Vector3d& place, const std::string& file, DecidingPlaces deciding, const Events& events);
 
   const Crs& prior() const { return *prior_; }
   /// Turns axes and coordinates of a building into the prior's, in place. Polygons with a point outside the operation's reach are emptied.
@@ -37,13 +42,15 @@ class ModelFrames {
   };
   Frame& frame_of(const BuildingModel& model, const std::string& file);
   bool swaps_axes(const BuildingModel& model, const std::string& file);
+  Eigen::Vector3d deciding_place(const BuildingModel& model, const std::string& file) const;
 
   const PriorOptions& options_;
   const Events& events_;
+  DecidingPlaces deciding_;
   std::optional<InputCrs> first_;
   std::optional<Crs> prior_;
   std::map<std::string, Frame> frames_;                                ///< by srsName
-  std::map<std::pair<std::string, std::string>, bool> swaps_axes_;     ///< by file and srsName: writers differ in the order under one name
+  std::map<std::pair<std::string, std::string>, bool> swaps_axes_;     ///< by srsName and file: writers differ in the order under one name
 };
 
 }  // namespace priormap

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <set>
 #include <sstream>
 
 #include <priormap/builder/bbox_filter.hpp>
@@ -22,8 +23,10 @@
 
 #include "chunks.hpp"
 #include "face_index.hpp"
+#include "model_axes.hpp"
 #include "model_faces.hpp"
 #include "model_frame.hpp"
+#include "model_groups.hpp"
 #include "model_sight.hpp"
 #include "point_buffer.hpp"
 #include "report_text.hpp"
@@ -32,7 +35,7 @@
 namespace priormap {
 namespace {
 
-constexpr std::size_t batch_size = 512;   // buildings in memory at a time
+constexpr std::size_t batch_size = 512, batch_vertices = 2'000'000;   // what is in memory at a time: buildings, and one more than fills it
 
 void read_models(const std::filesystem::path& file, const BuildingModelOptions& options, const BuildingModelSink& sink) {
   const std::string extension = file.extension();
@@ -70,22 +73,31 @@ std::vector<ModelFace> hiding_faces(std::vector<ModelFace> faces, ModelKind kind
   return faces;
 }
 
-/// First pass: the CRS of the prior from the first building, and the faces of all.
+/// First pass: the CRS of the prior, and the faces of all.
 class Survey {
  public:
   Survey(const PriorOptions& prior_options, const ModelOptions& model_options, const Events& events)
-      : prior_options_(prior_options), model_options_(model_options), events_(events), sight_(model_options.sight) {}
+      : prior_options_(prior_options), model_options_(model_options), events_(events), groups_(prior_options), sight_(model_options.sight) {}
+  /// Where it is known that some are strays.
+  Survey(const PriorOptions& prior_options, const ModelOptions& model_options, ModelGroups groups, const Events& events)
+      : prior_options_(prior_options), model_options_(model_options), events_(events), groups_(std::move(groups)), groups_are_known_(true), sight_(model_options.sight) {
+    frames_ = std::make_unique<ModelFrames>(groups_.frames(events));
+    groups_.leave_out_beyond(frames_->prior(), events);
+  }
 
-  void read(const HashedFile& file) {
-    read_models(file.path, reader_options(model_options_), [&](BuildingModel&& model) {
+  void read(const HashedFile& hashed) {
+    const std::string file = hashed.path.string();
+    read_models(hashed.path, reader_options(model_options_), [&](BuildingModel&& model) {
       if (model.polygons.empty()) return;
+      if (leaves_out(model, hashed)) return void(with_strays_.insert(file));
+      if (!groups_are_known_) groups_.add(model, file);
       const std::uint32_t number = num_models_++;
-      if (!frames_) frames_ = std::make_unique<ModelFrames>(prior_options_, model, file.path.string(), events_);
-      file_frame_.try_emplace(file.path.string(), frames_->source(model, file.path.string()));
+      if (!frames_) frames_ = std::make_unique<ModelFrames>(prior_options_, model.srs_name, first_point(model, file), file, DecidingPlaces{}, events_);
+      file_frame_.try_emplace(file, frames_->source(model, file));
       // Under, behind and through bridges and plants much is seen.
       const bool hides_views = model_options_.sight.is_active() && model.kind == ModelKind::building;
       if (!model_options_.visible_faces_only() && !hides_views) return;
-      frames_->to_prior(model, file.path.string());
+      frames_->to_prior(model, file);
       Diagnostics ignored;
       std::vector<ModelFace> faces = model_faces(model, ignored);
       if (hides_views) sight_.add(faces);
@@ -94,6 +106,10 @@ class Survey {
     });
   }
 
+  ModelGroups take_groups() { return std::move(groups_); }
+  /// Far from all others, where the prior's CRS is not made for.
+  bool leaves_out(const BuildingModel& model, const HashedFile& file) const { return groups_.leaves_out(model, file.path.string()); }
+  bool has_strays(const HashedFile& file) const { return with_strays_.contains(file.path.string()); }
   /// Once, after the last `read`.
   void finish() { faces_.finish(); }
   /// Once, after the last `read`. Nothing without --visible-from.
@@ -112,12 +128,66 @@ class Survey {
   const PriorOptions& prior_options_;
   const ModelOptions& model_options_;
   const Events& events_;
+  ModelGroups groups_;
+  bool groups_are_known_ = false;
+  std::set<std::string> with_strays_;
   std::unique_ptr<ModelFrames> frames_;
   std::map<std::string, ModelSourceFrame> file_frame_;
   std::uint32_t num_models_ = 0;
   FaceIndex faces_;
   ModelSight sight_;
 };
+
+/// Warnings that wait until it is certain that they hold.
+class HeldWarnings {
+ public:
+  explicit HeldWarnings(const Events& events) : events_(events) {
+    held_.warning = [this](const std::string& message) { is_released_ ? events_.warn(message) : messages_.push_back(message); };
+  }
+  HeldWarnings(const HeldWarnings&) = delete;
+  const Events& held() const { return held_; }
+  void release() {
+    is_released_ = true;
+    for (const std::string& message : messages_) events_.warn(message);
+  }
+
+ private:
+  const Events& events_;
+  Events held_;
+  std::vector<std::string> messages_;
+  bool is_released_ = false;
+};
+
+/// Where the models lie, read for nothing else: a stray in front of them may be out of reach of its own CRS.
+ModelGroups find_groups(const std::vector<HashedFile>& files, const PriorOptions& prior_options, const ModelOptions& model_options) {
+  ModelGroups groups(prior_options);
+  for (const HashedFile& file : files)
+    read_models(file.path, reader_options(model_options), [&](const BuildingModel& model) { groups.add(model, file.path.string()); });
+  return groups;
+}
+
+/// The first building decides on the CRS, unless it, or another, turns out to lie far from the rest: then the rest decides, in one more pass.
+/// @param warnings  live as long as the survey
+std::unique_ptr<Survey> survey_of(const std::vector<HashedFile>& files, const PriorOptions& prior_options, const ModelOptions& model_options, HeldWarnings& warnings, const Events& events) {
+  auto survey = std::make_unique<Survey>(prior_options, model_options, warnings.held());
+  std::optional<ModelGroups> groups;
+  try {
+    for (const HashedFile& file : files) survey->read(file);
+    groups.emplace(survey->take_groups());
+    if (!groups->finish()) groups.reset();
+  } catch (const CrsError&) {
+    groups.emplace(find_groups(files, prior_options, model_options));
+    if (!groups->finish()) throw;
+  }
+  if (groups) {
+    survey = std::make_unique<Survey>(prior_options, model_options, std::move(*groups), events);
+    for (const HashedFile& file : files) survey->read(file);
+  } else {
+    warnings.release();
+  }
+  survey->finish();
+  return survey;
+}
 
 /// One thread's way from a building in the prior's CRS to its points.
 class ModelSampler {
@@ -227,6 +297,7 @@ class Sampling {
         points += of_building[i];
       }
       batch_.clear();
+      num_vertices_ = 0;
     };
     read_models(file.path, reader_options(model_options_), [&](BuildingModel&& model) {
       if (model.unresolved_references > 0) {
@@ -234,10 +305,15 @@ class Sampling {
                                std::to_string(model.unresolved_references) + " references to what the file does not hold");
       }
       if (model.polygons.empty()) return;
+      if (survey_.leaves_out(model, file)) {
+        report.diagnostics.add(DiagnosticCode::far_from_the_rest, model.id, "lies far from the rest, outside the domain of the prior's CRS; left out");
+        return;
+      }
       report.polygons += static_cast<std::size_t>(std::ranges::count(model.polygons, false, &ModelPolygon::repeated));
       frames_.to_prior(model, file.path.string());
+      for (const ModelPolygon& polygon : model.polygons) for_each_ring(polygon.polygon, [&](const Ring3& ring) { num_vertices_ += ring.size(); });
       batch_.push_back(std::move(model));
-      if (batch_.size() == batch_size) finish_batch();
+      if (batch_.size() == batch_size || num_vertices_ > batch_vertices) finish_batch();
     });
     finish_batch();
     return points;
@@ -253,6 +329,7 @@ class Sampling {
   int threads_;
   std::uint32_t num_models_ = 0;   ///< sampled before the batch; the survey counted in the same order
   std::vector<BuildingModel> batch_;
+  std::size_t num_vertices_ = 0;     ///< of the batch
 };
 
 PriorSource source_of(const HashedFile& file, const ModelSourceFrame& frame, const PriorOptions& prior_options, const ModelOptions& model_options) {
@@ -292,7 +369,7 @@ std::vector<HashedFile> files_with_models(const std::vector<HashedFile>& files, 
   for (const HashedFile& file : files) {
     if (survey.frame_of(file))
       kept.push_back(file);
-    else
+    else if (!survey.has_strays(file))
       events.warn(file.path.string() + ": holds no building with surfaces");
   }
   return kept;
@@ -345,9 +422,9 @@ ModelReport build_model_prior(const std::vector<std::filesystem::path>& inputs, 
   prior_options.validate(events);
   model_options.validate();
   const std::vector<HashedFile> files = distinct_files(inputs);
-  Survey survey(prior_options, model_options, events);
-  for (const HashedFile& file : files) survey.read(file);
-  survey.finish();
+  HeldWarnings warnings(events);
+  const std::unique_ptr<Survey> surveyed = survey_of(files, prior_options, model_options, warnings, events);
+  Survey& survey = *surveyed;
   if (!survey.frames()) throw FormatError(files.front().path, "holds no building with surfaces" + (model_options.lod > 0 ? " of LoD" + std::to_string(model_options.lod) : std::string()));
   const std::vector<HashedFile> with_models = files_with_models(files, survey, events);
   std::vector<PriorSource> sources;

@@ -1,9 +1,6 @@
 #include "outline_crs.hpp"
 
-#include <iomanip>
-#include <iterator>
 #include <set>
-#include <sstream>
 
 #include <priormap/builder/prior_crs.hpp>
 #include <priormap/core/error.hpp>
@@ -42,23 +39,6 @@ InputCrs heights_of(const NamedRaster& raster, const InputCrs& outlines) {
   return {raster.crs.vertical() ? outlines.crs.horizontal().with_vertical(raster.crs) : raster.crs, "", raster.file};
 }
 
-/// The groups that decide where the prior lies, and those far away from them.
-struct SortedGroups {
-  std::vector<OutlineGroup> main, strays;
-};
-
-/// A group that holds nine tenths decides alone: what lies far off is a slip of somebody's hand, or elsewhere.
-SortedGroups sort_out(std::vector<OutlineGroup> groups) {
-  constexpr double most = 0.9;
-  std::size_t total = 0;
-  for (const OutlineGroup& group : groups) total += group.count;
-  const bool one_decides = groups.size() > 1 && static_cast<double>(groups.front().count) >= most * static_cast<double>(total);
-  if (!one_decides) return {std::move(groups), {}};
-  SortedGroups sorted{{}, {std::make_move_iterator(groups.begin() + 1), std::make_move_iterator(groups.end())}};
-  sorted.main.push_back(std::move(groups.front()));
-  return sorted;
-}
-
 std::optional<LonLatArea> area_of(const std::vector<OutlineGroup>& groups, const std::vector<InputCrs>& outlines) {
   std::optional<LonLatArea> all;
   for (const OutlineGroup& group : groups) {
@@ -67,27 +47,6 @@ std::optional<LonLatArea> area_of(const std::vector<OutlineGroup>& groups, const
     all = all ? united(*all, *group.area) : *group.area;
   }
   return all;
-}
-
-std::string text_of(const GeoPoint& place) {
-  return (std::ostringstream() << std::fixed << std::setprecision(3) << "longitude " << place.lon_deg << ", latitude " << place.lat_deg).str();
-}
-
-/// Of the strays those that the prior's CRS does not reach, or where it makes lengths wrong; says of all where they lie.
-std::vector<OutlineGroup> beyond_prior(const std::vector<OutlineGroup>& strays, const LonLatArea& main, const Crs& prior, const std::vector<InputCrs>& outlines, const Events& events) {
-  constexpr std::size_t most_named = 10;
-  std::vector<OutlineGroup> beyond;
-  for (std::size_t i = 0; i < strays.size(); ++i) {
-    const OutlineGroup& stray = strays[i];
-    const bool fits = stray.area && fits_lengths(prior, *stray.area);
-    if (!fits) beyond.push_back(stray);
-    if (i >= most_named) continue;
-    const std::string others = stray.count > 1 ? " and " + std::to_string(stray.count - 1) + " more near it" : "";
-    events.warn(outlines[stray.file].file + ": " + stray.first + others + (stray.count > 1 ? " lie" : " lies") + (stray.area ? " at " + text_of(stray.area->middle()) : std::string(" nowhere on Earth")) +
-                ", far from the rest (" + text_of(main.middle()) + "); " + (fits ? "kept, --bbox leaves out what is not wanted" : "left out, " + prior.horizontal().human_name() + " is not made for there"));
-  }
-  if (strays.size() > most_named) events.warn("and " + std::to_string(strays.size() - most_named) + " more places far from the rest");
-  return beyond;
 }
 
 std::optional<Transformer> constant_to_prior(const InputCrs& outlines, const Crs& prior) {
@@ -122,7 +81,7 @@ OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptio
   const std::optional<double> constant_m = terrain ? outline_options.ground_height_m : std::optional(outline_options.ground_height_m.value_or(0));
   std::set<OutlineGroup::Cell> left_out;
   if (area && prior_options.bbox.empty())   // a box says what is wanted
-    for (const OutlineGroup& stray : beyond_prior(groups.strays, *area, prior, outlines, events)) left_out.insert(stray.cells.begin(), stray.cells.end());
+    for (const OutlineGroup& stray : beyond_prior(groups.strays, *area, prior, [&](std::uint32_t file) { return outlines[file].file; }, events)) left_out.insert(stray.cells.begin(), stray.cells.end());
   std::vector<Transformer> prior_from_outlines;
   for (const InputCrs& outline : outlines) prior_from_outlines.push_back(transformer_to_prior(outline.crs.horizontal(), prior.horizontal(), area, outline.file));
   return {std::move(prior_from_outlines), prior, area, first.assumed_vertical,
@@ -134,7 +93,7 @@ FootprintList without_strays(FootprintList footprints, const OutlineFrames& fram
   FootprintList kept;
   for (const Footprint& footprint : footprints) {
     if (frames.left_out.contains(cell_of(footprint, frames.prior_from_outlines[footprint.file].source())))
-      diagnostics.add(DiagnosticCode::degenerate_geometry, footprint.id, "lies far from the rest, outside the domain of the prior's CRS; left out");
+      diagnostics.add(DiagnosticCode::far_from_the_rest, footprint.id, "lies far from the rest, outside the domain of the prior's CRS; left out");
     else
       kept.push_back(footprint);
   }

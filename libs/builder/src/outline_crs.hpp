@@ -29,7 +29,7 @@ struct OutlineFrames {
 /// @throws CrsError, IoError, FormatError, UsageError when a surface is given but no ground to count from
 OutlineFrames resolve_outline_frames(const OutlineInput& input, const PriorOptions& prior_options, const OutlineOptions& outline_options, const Events& events);
 
-/// Those that are not left out; the others are counted (705).
+/// Those that are not left out; the others are counted (708).
 FootprintList without_strays(FootprintList footprints, const OutlineFrames& frames, Diagnostics& diagnostics);
 
 }  // namespace priormap

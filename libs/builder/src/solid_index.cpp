@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace priormap {
 namespace {
@@ -40,6 +41,20 @@ bool comes_inside(const Polygon2& polygon, const Eigen::Vector2d& a, const Eigen
   return crosses;
 }
 
+/// Whether the way from `a` into a polygon leads through a wall of it that is parallel to the one that looks along the way.
+bool enters_head_on(const Polygon2& polygon, const Eigen::Vector2d& a, const Eigen::Vector2d& inside) {
+  constexpr double sine = 0.1;   // 6 degrees
+  const Eigen::Vector2d way = (inside - a).normalized();
+  bool head_on = false;
+  for_each_ring(polygon, [&](const Ring2& ring) {
+    for_each_edge(ring, [&](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
+      if (side_of(a, inside, p) == side_of(a, inside, q) || side_of(p, q, a) == side_of(p, q, inside)) return;
+      head_on |= std::abs((q - p).normalized().dot(way)) < sine;
+    });
+  });
+  return head_on;
+}
+
 Eigen::Vector3d middle_of(const Ring3& ring) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& p : ring) sum += p - ring.front();
@@ -55,7 +70,7 @@ SolidIndex::SolidIndex(std::span<const BuildingSolid> solids) : solids_(solids) 
 }
 
 std::vector<std::uint32_t> SolidIndex::near(std::uint32_t solid) const {
-  std::vector<std::uint32_t> found = index_.meeting(grown(solids_[solid].bounds, touching_m));
+  std::vector<std::uint32_t> found = index_.meeting(grown(solids_[solid].bounds, joint_m));
   std::erase(found, solid);
   return found;
 }
@@ -64,23 +79,29 @@ void SolidIndex::remove_hidden(const Face& face, const Eigen::Vector3d& normal, 
                                std::vector<Eigen::Vector3d>& points) const {
   const Ring3& exterior = face.polygon.exterior;
   const Extent extent = extent_of(exterior);
-  const Eigen::Vector3d middle = middle_of(exterior), outward = touching_m * normal;
-  std::vector<const BuildingSolid*> covering;
+  const Eigen::Vector3d middle = middle_of(exterior), outward = touching_m * normal, across = joint_m * normal;
+  const bool is_wall = face.surface_class == SurfaceClass::wall;   // begins with the edge on the ground
+  std::vector<const BuildingSolid*> touching, facing;
   for (const std::uint32_t i : candidates) {
     const BuildingSolid& solid = solids_[i];
-    if (extent.low_z > solid.top_z + tolerance_m || !meet(grown(extent.plan, touching_m), solid.bounds)) continue;
-    if (face.surface_class == SurfaceClass::wall) {  // begins with the edge on the ground
-      const Eigen::Vector2d a = (exterior[0] + outward).head<2>(), b = (exterior[1] + outward).head<2>();
-      if (!comes_inside(solid.outline, a, b)) continue;
-    }
-    covering.push_back(&solid);
+    if (extent.low_z > solid.top_z + tolerance_m || !meet(grown(extent.plan, joint_m), solid.bounds)) continue;
+    const auto reaches = [&](const Eigen::Vector3d& step) { return comes_inside(solid.outline, (exterior[0] + step).head<2>(), (exterior[1] + step).head<2>()); };
+    if (is_wall ? reaches(outward) : meet(grown(extent.plan, touching_m), solid.bounds)) touching.push_back(&solid);
+    if (is_wall && reaches(across)) facing.push_back(&solid);
   }
-  if (covering.empty()) return;
+  if (touching.empty() && facing.empty()) return;
   std::erase_if(points, [&](const Eigen::Vector3d& p) {
     const Eigen::Vector3d to_middle = middle - p;
     const double distance = to_middle.norm();
-    const Eigen::Vector3d probe = p + outward + (distance > inset_m ? Eigen::Vector3d(to_middle * (inset_m / distance)) : Eigen::Vector3d::Zero());
-    return std::ranges::any_of(covering, [&](const BuildingSolid* solid) { return solid->holds({probe.x(), probe.y(), p.z() + outward.z()}, tolerance_m); });
+    const Eigen::Vector3d inset = distance > inset_m ? Eigen::Vector3d(to_middle * (inset_m / distance)) : Eigen::Vector3d::Zero();
+    const auto holds = [&](const BuildingSolid& solid, const Eigen::Vector3d& step) {
+      const Eigen::Vector3d probe = p + step + inset;
+      return solid.holds({probe.x(), probe.y(), p.z() + step.z()}, tolerance_m);
+    };
+    return std::ranges::any_of(touching, [&](const BuildingSolid* solid) { return holds(*solid, outward); }) ||
+           std::ranges::any_of(facing, [&](const BuildingSolid* solid) {
+             return holds(*solid, across) && enters_head_on(solid->outline, (p + inset).head<2>(), (p + inset + across).head<2>());
+           });
   });
 }
 

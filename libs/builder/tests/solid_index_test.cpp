@@ -88,6 +88,24 @@ TEST(SolidIndex, WallsInsideAnotherBlockAreGone) {
   EXPECT_GT(walls.size(), 0u);
 }
 
+TEST(SolidIndex, WallsThatFaceEachOtherAcrossAJointAreOne) {
+  const auto left_and_right = [](double gap) {
+    const std::vector<BuildingSolid> solids{block(0, 0, 10, 10, 0, 12), block(10 + gap, 0, 20, 10, 0, 8)};
+    const auto on_other = [gap](const Eigen::Vector3d& p) { return std::abs(p.x() - 10 - gap) < 1e-6 && p.y() > 0.1 && p.y() < 9.9; };
+    const Points left = visible_points(solids, 0, SurfaceClass::wall);
+    EXPECT_EQ(count(left, [](const auto& p) { return on_shared_wall(p) && p.z() > 8; }), 19u * 8u) << gap;
+    return std::pair(count(left, [](const auto& p) { return on_shared_wall(p) && p.z() <= 8; }), count(visible_points(solids, 1, SurfaceClass::wall), on_other));
+  };
+  for (const double gap : {0.0, 0.01, 0.049, 0.05, 0.051, 0.07, 0.09}) EXPECT_EQ(left_and_right(gap), std::pair(std::size_t{0}, std::size_t{0})) << gap;
+  for (const double gap : {0.11, 0.2}) EXPECT_EQ(left_and_right(gap), std::pair(std::size_t{19 * 17}, std::size_t{19 * 17})) << gap;
+}
+
+TEST(SolidIndex, ACornerBeforeAWallHidesNothing) {
+  std::vector<BuildingSolid> solids{block(0, 0, 10, 10, 0, 8), block(10.07, 0, 20, 10, 0, 8)};
+  solids[1].outline = {{{10.07, 5}, {15, 0}, {20, 5}, {15, 10}}, {}};
+  EXPECT_EQ(visible_points(solids, 0, SurfaceClass::wall).size(), visible_points({solids[0]}, 0, SurfaceClass::wall).size());
+}
+
 TEST(SolidIndex, ALaneBetweenHousesIsSeen) {
   const std::vector<BuildingSolid> solids{block(0, 0, 10, 10, 0, 8), block(10.5, 0, 20, 10, 0, 8)};
   EXPECT_EQ(visible_points(solids, 0, SurfaceClass::wall).size(), visible_points({solids[0]}, 0, SurfaceClass::wall).size());

@@ -3,6 +3,7 @@
 #include <bzlib.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -39,6 +40,7 @@ struct ByteSource::Stream {
   explicit Stream(const std::filesystem::path& input) : path(input) {}
   virtual ~Stream() = default;
   virtual std::size_t read(std::span<char> buffer) = 0;
+  std::optional<std::uintmax_t> padding_begins;
   const std::filesystem::path path;
 };
 
@@ -77,6 +79,10 @@ struct ByteSource::Bzip2 : Stream {
     while (state.avail_out > 0) {
       if (state.avail_in == 0) refill();
       if (state.avail_in == 0 && !in_stream) break;   // the end of the last stream
+      if (!in_stream && num_streams > 0 && *state.next_in == 0) {
+        pass_padding();
+        break;
+      }
       if (!in_stream) begin_stream();
       const bool starved = state.avail_in == 0;
       const unsigned room = state.avail_out;
@@ -91,9 +97,16 @@ struct ByteSource::Bzip2 : Stream {
   void refill() {
     state.next_in = packed.data();
     state.avail_in = static_cast<unsigned>(std::fread(packed.data(), 1, packed.size(), file.get()));
+    num_packed += state.avail_in;
     if (std::ferror(file.get())) throw IoError(path, "cannot be read");
   }
+  void pass_padding() {
+    padding_begins = num_packed - state.avail_in;
+    for (; state.avail_in > 0; refill())
+      if (std::any_of(state.next_in, state.next_in + state.avail_in, [](char c) { return c != 0; })) throw FormatError(path, "the bzip2 stream is damaged");
+  }
   void begin_stream() {
+    ++num_streams;
     if (BZ2_bzDecompressInit(&state, 0, 0) != BZ_OK) throw Error(path.string() + ": no memory to decompress it");
     in_stream = true;
   }
@@ -106,6 +119,7 @@ struct ByteSource::Bzip2 : Stream {
   std::vector<char> packed;
   bz_stream state{};
   bool in_stream = false;
+  std::uintmax_t num_packed = 0, num_streams = 0;
 };
 
 ByteSource::ByteSource(const std::filesystem::path& file) {
@@ -117,5 +131,7 @@ ByteSource::ByteSource(const std::filesystem::path& file) {
 ByteSource::~ByteSource() = default;
 
 std::size_t ByteSource::read(std::span<char> buffer) { return stream_->read(buffer); }
+
+std::optional<std::uintmax_t> ByteSource::padding_begins() const { return stream_->padding_begins; }
 
 }  // namespace priormap

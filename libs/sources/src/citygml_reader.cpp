@@ -366,9 +366,12 @@ void read_citygml(const std::filesystem::path& file, const BuildingModelOptions&
   std::vector<Waiting> waiting;
   std::unordered_set<std::string> wanted;
   GeometryItems shared;
+  ReferencedVertices referenced(file);
   auto finish = [&](BuildingModel&& model, GeometryItems&& geometry) {
-    assemble(std::move(geometry), shared, options, model);
+    const std::size_t num_referenced = assemble(std::move(geometry), shared, options, referenced, model);
+    const bool is_kept = model.kind != ModelKind::vegetation;   // hides others
     sink(std::move(model));
+    if (!is_kept) referenced.give_back(num_referenced);
   };
 
   CityGmlPass(file, options, false, shared, [&](BuildingModel&& model, GeometryItems&& geometry) {

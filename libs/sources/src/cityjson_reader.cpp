@@ -107,8 +107,9 @@ void read_header(Document& document, const std::string& key, const json& value) 
 /// Reads the geometry objects of one city object into items.
 class GeometryReader {
  public:
-  GeometryReader(const Document& document, int object, bool terrain, GeometryItems& items)
-      : document_(document), items_(items) {
+  /// @param num_placed  vertices that templates have put into the building
+  GeometryReader(const Document& document, int object, bool terrain, GeometryItems& items, ReferencedVertices& referenced, std::size_t& num_placed)
+      : document_(document), items_(items), referenced_(referenced), num_placed_(num_placed) {
     context_.object = object;
     if (terrain) context_.surface_class = SurfaceClass::terrain;
   }
@@ -203,11 +204,17 @@ class GeometryReader {
       if (!i.is_number_unsigned() || i.get<std::size_t>() >= document_.template_vertices.size()) document_.fail("a template refers to a vertex that is not there");
       return document_.template_vertices[i.get<std::size_t>()];
     });
-    for (std::size_t i = first; i < items_.items.size(); ++i) place(items_.items[i].polygon.polygon, T_model_template);
+    for (std::size_t i = first; i < items_.items.size(); ++i) {
+      Polygon3& polygon = items_.items[i].polygon.polygon;
+      referenced_.add_placed(polygon, num_placed_);
+      place(polygon, T_model_template);
+    }
   }
 
   const Document& document_;
   GeometryItems& items_;
+  ReferencedVertices& referenced_;
+  std::size_t& num_placed_;
   GeometryContext context_;
   int num_solids_ = 0;
   const json no_value_;
@@ -216,8 +223,8 @@ class GeometryReader {
 /// City objects of one building, gathered until all of them are there.
 class Buildings {
  public:
-  Buildings(const Document& document, const BuildingModelOptions& options, const BuildingModelSink& sink)
-      : document_(document), options_(options), sink_(sink) {}
+  Buildings(const Document& document, const BuildingModelOptions& options, ReferencedVertices& referenced, const BuildingModelSink& sink)
+      : document_(document), options_(options), referenced_(referenced), sink_(sink) {}
 
   /// First pass: who belongs to whom.
   void announce(const std::string& id, const json& object) {
@@ -238,14 +245,15 @@ class Buildings {
     const std::string building = root(id);
     Members& members = members_[building];
     const int number = id == building ? 0 : ++members.num_parts;
-    GeometryReader(document_, number, kind == ModelKind::terrain, members.items).read(object.value("geometry", json::array()));
+    GeometryReader(document_, number, kind == ModelKind::terrain, members.items, referenced_, members.num_placed).read(object.value("geometry", json::array()));
     if (++members.seen < members.expected) return;
     emit(building, *kind, std::move(members.items));
+    if (kind == ModelKind::vegetation) referenced_.give_back(members.num_placed);   // the others are kept: they hide each other
     members_.erase(building);
   }
 
  private:
-  struct Members { std::size_t expected = 0, seen = 0; int num_parts = 0; GeometryItems items; };
+  struct Members { std::size_t expected = 0, seen = 0, num_placed = 0; int num_parts = 0; GeometryItems items; };
 
   /// Nothing for what nobody wants.
   std::optional<ModelKind> kind_of(const json& object) const {
@@ -269,12 +277,13 @@ class Buildings {
     model.id = id;
     model.kind = kind;
     model.srs_name = document_.srs_name;
-    assemble(std::move(items), GeometryItems{}, options_, model);
+    assemble(std::move(items), GeometryItems{}, options_, referenced_, model);
     sink_(std::move(model));
   }
 
   const Document& document_;
   const BuildingModelOptions& options_;
+  ReferencedVertices& referenced_;
   const BuildingModelSink& sink_;
   std::unordered_map<std::string, std::string> parent_;
   std::unordered_map<std::string, Members> members_;
@@ -312,7 +321,8 @@ void stream_json(const Document& document, const Member& member, const Object& o
 }
 
 void read_single_document(Document& document, const BuildingModelOptions& options, const BuildingModelSink& sink) {
-  Buildings buildings(document, options, sink);
+  ReferencedVertices referenced(document.file);
+  Buildings buildings(document, options, referenced, sink);
   bool typed = false;
   stream_json(document,
       [&](const std::string& key, const json& value) {
@@ -352,6 +362,7 @@ json parse_line(const Document& document, const std::string& line, std::size_t n
 
 void read_sequence(Document& document, const BuildingModelOptions& options, const BuildingModelSink& sink) {
   std::ifstream stream(document.file, std::ios::binary);
+  ReferencedVertices referenced(document.file);
   std::string line;
   for (std::size_t number = 1; std::getline(stream, line); ++number) {
     if (line.size() > max_line) document.fail("line " + std::to_string(number) + ": longer than 256 MB");
@@ -363,7 +374,7 @@ void read_sequence(Document& document, const BuildingModelOptions& options, cons
     if (parsed.value("type", json()) != "CityJSONFeature") continue;
     read_vertices(document, parsed.value("vertices", json::array()), document.vertices);
     const json objects = parsed.value("CityObjects", json::object());
-    Buildings buildings(document, options, sink);
+    Buildings buildings(document, options, referenced, sink);
     for (const auto& [id, object] : objects.items()) if (object.is_object()) buildings.announce(id, object);
     buildings.count_members();
     for (const auto& [id, object] : objects.items()) if (object.is_object()) buildings.add(id, object);

@@ -6,6 +6,8 @@
 #include <set>
 #include <tuple>
 
+#include <priormap/core/error.hpp>
+
 namespace priormap {
 namespace {
 
@@ -24,33 +26,33 @@ std::string signature(const Polygon3& polygon) {
 /// Which polygons have been met, wherever they start and whichever way round they go.
 class SeenPolygons {
  public:
-  enum class Met {
-    first,      ///< by all the building
-    in_part,    ///< its own body states it already (a boundary surface repeats its solid's, carelessly wound or not), or another solid of the same part, looking the same way
-    elsewhere,  ///< another part states it, looking the same way
+  struct Met {
+    std::vector<std::size_t> repeats;   ///< faces of the same part that it states again, and of the same solid where both are of one: carelessly wound or not. Empty: it is a face of its own
+    bool elsewhere = false;             ///< another part or solid states it, looking the same way
   };
-  Met insert(const GeometryItem& item) {
-    const Eigen::Vector3d normal = newell_normal(item.polygon.polygon);
-    Sides& sides = sides_[signature(item.polygon.polygon)];
-    std::vector<Face>& own = sides.of_object[item.context.object];
-    for (const Face& face : own) {
-      const bool same_solid = face.solid == item.context.solid || face.solid == 0 || item.context.solid == 0;
-      if (same_solid || !(face.normal.dot(normal) < 0)) return Met::in_part;
-    }
-    own.push_back({item.context.solid, normal});
-    if (std::ranges::any_of(sides.met, [&](const Eigen::Vector3d& side) { return !(side.dot(normal) < 0); })) return Met::elsewhere;
-    sides.met.push_back(normal);
-    return Met::first;
+  /// @param index  by which the caller knows it, if it is a face of its own
+  Met insert(const GeometryContext& context, const Polygon3& polygon, std::size_t index) {
+    const Eigen::Vector3d normal = newell_normal(polygon);
+    Sides& sides = sides_[signature(polygon)];
+    std::vector<Face>& own = sides.of_object[context.object];
+    Met met;
+    for (const Face& face : own)
+      if (face.solid == context.solid || face.solid == 0 || context.solid == 0) met.repeats.push_back(face.index);
+    if (!met.repeats.empty()) return met;
+    own.push_back({context.solid, index});
+    met.elsewhere = std::ranges::any_of(sides.met, [&](const Eigen::Vector3d& side) { return !(side.dot(normal) < 0); });
+    if (!met.elsewhere) sides.met.push_back(normal);
+    return met;
   }
 
  private:
   struct Face {
     int solid;
-    Eigen::Vector3d normal;
+    std::size_t index;
   };
   struct Sides {
     std::vector<Eigen::Vector3d> met;             ///< two at most: they look away from each other
-    std::map<int, std::vector<Face>> of_object;   ///< likewise
+    std::map<int, std::vector<Face>> of_object;
   };
   std::unordered_map<std::string, Sides> sides_;
 };
@@ -98,56 +100,104 @@ class Resolver {
   std::size_t steps_ = 0;
 };
 
-/// How solids refer to a polygon that a boundary surface states.
-struct SolidSides {
+/// How a solid refers to a polygon that is stated elsewhere in its part.
+struct SolidSide {
   bool as_stated = false, turned = false;
+
+  bool is_turned() const { return turned && !as_stated; }
 };
 
-/// Replaces references by the polygons they bring in; a boundary surface that refers to a polygon of the solid names its class, a solid that refers to the polygon
-/// of a boundary surface says which way it looks.
-std::vector<GeometryItem> resolve_references(GeometryItems& geometry, const GeometryItems& shared, std::size_t& unresolved) {
-  std::vector<GeometryItem> resolved;
-  constexpr std::size_t max_shared_vertices = 8'000'000;
-  std::size_t num_shared_vertices = 0;
-  std::set<std::tuple<const GeometryItem*, int, int>> brought_in;   // polygon, level, part; templates may come many times
-  std::unordered_map<std::size_t, SurfaceClass> named;
-  std::unordered_map<std::size_t, SolidSides> sides;
-  Resolver resolver(geometry, shared);
-  for (const GeometryItem& reference : geometry.items) {
-    if (reference.reference.empty()) continue;
-    const GeometryContext& context = reference.context;
-    auto bring_in = [&](const GeometryItems& home, std::size_t index, bool flip) {
-      const GeometryItem& target = home.items[index];
-      if (&home == &geometry && target.context.lod == context.lod && target.context.object == context.object) {
-        if (context.thematic && !target.context.thematic) named.try_emplace(index, context.surface_class);
-        if (context.solid != 0 && target.context.thematic) (flip ? sides[index].turned : sides[index].as_stated) = true;
-        return;
-      }
-      if (!reference.placement) {
-        if (!brought_in.insert({&target, context.lod, context.object}).second) return;
-        for_each_ring(target.polygon.polygon, [&](const Ring3& ring) { num_shared_vertices += ring.size(); });
-        if (num_shared_vertices > max_shared_vertices) return void(++unresolved);
-      }
-      GeometryItem copy{context, target.polygon, {}, {}};
-      if (reference.placement) place(copy.polygon.polygon, *reference.placement);
-      if (flip) reverse(copy.polygon.polygon);
-      resolved.push_back(std::move(copy));
-    };
-    if (!resolver.resolve(reference.reference, context.flip, bring_in)) ++unresolved;
+/// What references of a part say of a polygon of the same part.
+struct SaidOfPolygon {
+  std::optional<SurfaceClass> surface_class;
+  std::map<int, SolidSide> solids;   ///< but for the one that states it
+};
+
+/// Replaces references by the polygons they bring in. A boundary surface that refers to a polygon of the solid names its class; a solid that refers to the polygon
+/// of a boundary surface, or of another solid, has it as a face and says which way it looks.
+class References {
+ public:
+  References(GeometryItems& geometry, const GeometryItems& shared, ReferencedVertices& vertices) : geometry_(geometry), shared_(shared), vertices_(vertices) {}
+
+  std::vector<GeometryItem> resolve() {
+    Resolver resolver(geometry_, shared_);
+    for (const GeometryItem& reference : geometry_.items) {
+      if (reference.reference.empty()) continue;
+      const bool known = resolver.resolve(reference.reference, reference.context.flip,
+                                          [&](const GeometryItems& home, std::size_t index, bool flip) { follow(reference, home, index, flip); });
+      if (!known) ++unresolved_;
+    }
+    const SaidOfPolygon nothing;
+    for (std::size_t i = 0; i < geometry_.items.size(); ++i) {
+      if (!geometry_.items[i].reference.empty()) continue;
+      const auto said = said_.find(i);
+      put(std::move(geometry_.items[i]), said == said_.end() ? nothing : said->second);
+    }
+    return std::move(resolved_);
   }
-  for (std::size_t i = 0; i < geometry.items.size(); ++i) {
-    GeometryItem& item = geometry.items[i];
-    if (!item.reference.empty()) continue;
-    if (const auto name = named.find(i); name != named.end()) {
-      item.context.surface_class = name->second;
+  std::size_t unresolved() const { return unresolved_; }
+  std::size_t num_vertices() const { return num_vertices_; }
+
+ private:
+  void follow(const GeometryItem& reference, const GeometryItems& home, std::size_t index, bool flip) {
+    const GeometryContext& context = reference.context;
+    const GeometryItem& target = home.items[index];
+    if (&home == &geometry_ && target.context.lod == context.lod && target.context.object == context.object) {
+      if (context.thematic && !target.context.thematic && !said_[index].surface_class) said_[index].surface_class = context.surface_class;
+      if (context.solid == 0 || context.solid == target.context.solid) return;
+      SolidSide& side = said_[index].solids[context.solid];
+      (flip ? side.turned : side.as_stated) = true;
+      return;
+    }
+    const int solid = context.solid != 0 ? context.solid : &home == &geometry_ ? target.context.solid : -target.context.solid;
+    if (!reference.placement && !brought_in_.insert({&target, context.lod, context.object, solid}).second) return;
+    GeometryItem copy{context, target.polygon, {}, {}};
+    copy.context.solid = solid;
+    if (!count(copy, reference.placement.has_value())) return;
+    if (reference.placement) place(copy.polygon.polygon, *reference.placement);
+    if (flip) reverse(copy.polygon.polygon);
+    copy.polygon.shared = !reference.placement;
+    resolved_.push_back(std::move(copy));
+  }
+
+  /// A polygon of the building's own: a face of each solid that refers to it.
+  void put(GeometryItem&& item, const SaidOfPolygon& said) {
+    if (said.surface_class) {
+      item.context.surface_class = *said.surface_class;
       item.context.thematic = true;
     }
     if (item.context.flip) reverse(item.polygon.polygon);
-    if (const auto side = sides.find(i); side != sides.end() && side->second.turned && !side->second.as_stated) reverse(item.polygon.polygon);
-    resolved.push_back(std::move(item));
+    if (said.solids.empty()) return resolved_.push_back(std::move(item));
+    const bool states_for_others = item.context.solid == 0;
+    item.polygon.shared = said.solids.size() > (states_for_others ? 1 : 0);
+    if (!states_for_others) resolved_.push_back(item);
+    bool is_first = states_for_others;
+    for (const auto& [solid, side] : said.solids) {
+      GeometryItem face = item;
+      face.context.solid = solid;
+      if (!std::exchange(is_first, false) && !count(face, false)) return;
+      if (side.is_turned()) reverse(face.polygon.polygon);
+      resolved_.push_back(std::move(face));
+    }
   }
-  return resolved;
-}
+
+  /// False where the model has too many.
+  bool count(const GeometryItem& item, bool placed) {
+    const Polygon3& polygon = item.polygon.polygon;
+    placed ? vertices_.add_placed(polygon, num_vertices_) : vertices_.add(polygon, num_vertices_);
+    if (num_vertices_ <= ReferencedVertices::most_of_model) return true;
+    ++unresolved_;
+    return false;
+  }
+
+  GeometryItems& geometry_;
+  const GeometryItems& shared_;
+  ReferencedVertices& vertices_;
+  std::size_t num_vertices_ = 0, unresolved_ = 0;
+  std::set<std::tuple<const GeometryItem*, int, int, int>> brought_in_;   // polygon, level, part, solid; templates may come many times
+  std::unordered_map<std::size_t, SaidOfPolygon> said_;
+  std::vector<GeometryItem> resolved_;
+};
 
 /// Of the building and each part the highest level; the building's own geometry gives way to more detailed parts, which repeat it.
 std::map<int, int> choose_lods(const std::vector<GeometryItem>& items, const BuildingModelOptions& options) {
@@ -182,23 +232,48 @@ std::vector<std::string> missing_references(const GeometryItems& geometry) {
   return missing;
 }
 
-void assemble(GeometryItems geometry, const GeometryItems& shared, const BuildingModelOptions& options, BuildingModel& model) {
-  std::vector<GeometryItem> items = resolve_references(geometry, shared, model.unresolved_references);
+void ReferencedVertices::add(const Polygon3& polygon, std::size_t& of_model) {
+  std::size_t count = 0;
+  for_each_ring(polygon, [&](const Ring3& ring) { count += ring.size(); });
+  of_model += count;
+  if ((of_file_ += count) > most_of_file)
+    throw FormatError(file_, "its references (xlinks, implicit geometry, templates) multiply to more than 32 million vertices; write it in several files, or take a lower level with --lod");
+}
+
+void ReferencedVertices::add_placed(const Polygon3& polygon, std::size_t& of_model) {
+  add(polygon, of_model);
+  if (of_model > most_of_model) throw FormatError(file_, "the templates that one building places come to more than 8 million vertices; take a lower level with --lod");
+}
+
+std::size_t assemble(GeometryItems geometry, const GeometryItems& shared, const BuildingModelOptions& options, ReferencedVertices& referenced, BuildingModel& model) {
+  References references(geometry, shared, referenced);
+  std::vector<GeometryItem> items = references.resolve();
+  model.unresolved_references += references.unresolved();
   const std::map<int, int> lods = choose_lods(items, options);
-  std::stable_sort(items.begin(), items.end(),
-                   [](const GeometryItem& a, const GeometryItem& b) { return a.context.thematic > b.context.thematic; });
+  // Solids are wound with more care than the boundary surfaces that repeat their faces, which name the class.
+  std::ranges::stable_sort(items, {}, [](const GeometryItem& item) { return item.context.solid == 0; });
   SeenPolygons seen;
+  std::vector<bool> is_named;
   for (GeometryItem& item : items) {
-    const auto lod = lods.find(item.context.object);
-    if (lod == lods.end() || lod->second != item.context.lod) continue;
-    const SeenPolygons::Met met = seen.insert(item);
-    if (met == SeenPolygons::Met::in_part) continue;
-    item.polygon.repeated = met == SeenPolygons::Met::elsewhere;
-    item.polygon.surface_class = item.context.surface_class;
-    item.polygon.part = item.context.object;
-    model.lod = std::max(model.lod, item.context.lod / 10);
+    const GeometryContext& context = item.context;
+    const auto lod = lods.find(context.object);
+    if (lod == lods.end() || lod->second != context.lod) continue;
+    const SeenPolygons::Met met = seen.insert(context, item.polygon.polygon, model.polygons.size());
+    for (const std::size_t face : met.repeats) {
+      if (!context.thematic || is_named[face]) continue;
+      model.polygons[face].surface_class = context.surface_class;
+      is_named[face] = true;
+    }
+    if (!met.repeats.empty()) continue;
+    item.polygon.repeated = met.elsewhere;
+    item.polygon.surface_class = context.surface_class;
+    item.polygon.part = context.object;
+    item.polygon.solid = context.solid;
+    model.lod = std::max(model.lod, context.lod / 10);
     model.polygons.push_back(std::move(item.polygon));
+    is_named.push_back(context.thematic);
   }
+  return references.num_vertices();
 }
 
 std::optional<SurfaceClass> surface_class_of(std::string_view name) {

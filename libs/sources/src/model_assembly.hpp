@@ -1,9 +1,11 @@
 #pragma once
 #include <Eigen/Geometry>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <priormap/sources/building_model.hpp>
@@ -35,6 +37,24 @@ struct GeometryItems {
   std::unordered_map<std::string, Range> ranges;
 };
 
+/// How many vertices references have put into models: a small file may refer to a large template any number of times.
+class ReferencedVertices {
+ public:
+  explicit ReferencedVertices(std::filesystem::path file) : file_(std::move(file)) {}
+  /// @param of_model  so far; the polygon's are added  @throws FormatError where those of the file are too many
+  void add(const Polygon3& polygon, std::size_t& of_model);
+  /// Of templates, which cannot be left out one by one. @throws FormatError where those of the model are too many, too
+  void add_placed(const Polygon3& polygon, std::size_t& of_model);
+  /// Of a model that nobody keeps once it has been read.
+  void give_back(std::size_t of_model) { of_file_ -= of_model; }
+
+  static constexpr std::size_t most_of_model = 8'000'000, most_of_file = 32'000'000;
+
+ private:
+  std::filesystem::path file_;
+  std::size_t of_file_ = 0;
+};
+
 /// A mirrored polygon goes the other way round, so that it looks outward still.
 void place(Polygon3& polygon, const Eigen::Affine3d& T_model_template);
 
@@ -43,7 +63,8 @@ std::vector<std::string> missing_references(const GeometryItems& geometry);
 
 /// Resolves references (`shared` holds what is stated outside the building), chooses the level of detail of the building and
 /// of each part, drops what a part repeats of itself and marks what it repeats of others. Fills `model.polygons`, `model.lod` and `model.unresolved_references`.
-void assemble(GeometryItems geometry, const GeometryItems& shared, const BuildingModelOptions& options, BuildingModel& model);
+/// @return how many of `referenced` are the model's
+std::size_t assemble(GeometryItems geometry, const GeometryItems& shared, const BuildingModelOptions& options, ReferencedVertices& referenced, BuildingModel& model);
 
 /// Boundary surface names of CityGML 1 to 3 and CityJSON, such as "WallSurface"; nullopt for other names.
 std::optional<SurfaceClass> surface_class_of(std::string_view local_name);

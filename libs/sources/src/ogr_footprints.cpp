@@ -1,5 +1,6 @@
 #include <priormap/sources/ogr_footprints.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 
@@ -60,18 +61,51 @@ void add_ring(const OGRLinearRing* ring, bool swap_axes, std::vector<Ring2>& rin
   rings.push_back(std::move(points));
 }
 
-/// Rings of all polygons, however deep in collections; the geometry must be free of curves.
-void add_rings(const OGRGeometry& geometry, bool swap_axes, std::vector<Ring2>& rings) {
+void add_rings(const OGRPolygon& polygon, bool swap_axes, std::vector<Ring2>& rings) {
+  add_ring(polygon.getExteriorRing(), swap_axes, rings);
+  for (int i = 0; i < polygon.getNumInteriorRings(); ++i) add_ring(polygon.getInteriorRing(i), swap_axes, rings);
+}
+
+/// All polygons, however deep in collections; the geometry must be free of curves.
+void add_polygons(const OGRGeometry& geometry, std::vector<const OGRPolygon*>& polygons) {
   const OGRwkbGeometryType type = wkbFlatten(geometry.getGeometryType());
   if (OGR_GT_IsSubClassOf(type, wkbGeometryCollection)) {
-    for (const OGRGeometry* member : *geometry.toGeometryCollection()) add_rings(*member, swap_axes, rings);
+    for (const OGRGeometry* member : *geometry.toGeometryCollection()) add_polygons(*member, polygons);
   } else if (OGR_GT_IsSubClassOf(type, wkbPolyhedralSurface)) {
-    for (const OGRPolygon* member : *geometry.toPolyhedralSurface()) add_rings(*member, swap_axes, rings);
+    for (const OGRPolygon* member : *geometry.toPolyhedralSurface()) polygons.push_back(member);
   } else if (OGR_GT_IsSubClassOf(type, wkbPolygon)) {
-    const OGRPolygon& polygon = *geometry.toPolygon();
-    add_ring(polygon.getExteriorRing(), swap_axes, rings);
-    for (int i = 0; i < polygon.getNumInteriorRings(); ++i) add_ring(polygon.getInteriorRing(i), swap_axes, rings);
+    polygons.push_back(geometry.toPolygon());
   }
+}
+
+/// What all polygons cover together, where the inside of one meets that of another; null where none does, or the polygons are not in order by themselves.
+std::unique_ptr<OGRGeometry> united_if_overlapping(const std::vector<const OGRPolygon*>& polygons) {
+  if (polygons.size() < 2) return nullptr;
+  OGRMultiPolygon all;
+  for (const OGRPolygon* polygon : polygons) all.addGeometry(polygon);
+  std::unique_ptr<OGRGeometry> united;
+  if (!all.IsValid() && std::ranges::all_of(polygons, [](const OGRPolygon* polygon) { return polygon->IsValid(); })) united.reset(all.UnionCascaded());
+  CPLErrorReset();   // GEOS says what is not valid
+  const double stated = all.get_Area();
+  const auto covered = [](const OGRGeometry& geometry) { return wkbFlatten(geometry.getGeometryType()) == wkbPolygon ? geometry.toPolygon()->get_Area() : geometry.toMultiPolygon()->get_Area(); };
+  const bool is_areal = united && (wkbFlatten(united->getGeometryType()) == wkbPolygon || wkbFlatten(united->getGeometryType()) == wkbMultiPolygon);
+  const bool overlaps = is_areal && covered(*united) < stated * (1 - 1e-9);   // else they share edges, which vanish
+  return overlaps ? std::move(united) : nullptr;
+}
+
+/// By the even-odd rule: of polygons that overlap, which no multipolygon may have, the rings of their union.
+std::vector<Ring2> rings_of(const OGRGeometry& geometry, bool swap_axes, const std::string& id, Diagnostics& diagnostics) {
+  std::vector<const OGRPolygon*> polygons;
+  add_polygons(geometry, polygons);
+  const std::unique_ptr<OGRGeometry> united = united_if_overlapping(polygons);
+  if (united) {
+    diagnostics.add(DiagnosticCode::intersection_rings, id, "its polygons overlap or lie within each other; united");
+    polygons.clear();
+    add_polygons(*united, polygons);
+  }
+  std::vector<Ring2> rings;
+  for (const OGRPolygon* polygon : polygons) add_rings(*polygon, swap_axes, rings);
+  return rings;
 }
 
 /// A value of a field as a mapper's tag would give it; nullopt where the field is empty, or holds no such thing.
@@ -95,7 +129,7 @@ std::optional<Footprint> read_feature(OGRFeature& feature, OGRLayer& layer, cons
   footprint.id = std::string(layer.GetName()) + "/" + (named ? feature.GetFieldAsString(fields.id) : std::to_string(feature.GetFID()));
   if (const OGRGeometry* geometry = feature.GetGeometryRef()) {
     const std::unique_ptr<OGRGeometry> straight(geometry->getLinearGeometry());
-    if (straight) add_rings(*straight, swap_axes, footprint.rings);
+    if (straight) footprint.rings = rings_of(*straight, swap_axes, footprint.id, diagnostics);
   }
   if (footprint.rings.empty()) {
     diagnostics.add(DiagnosticCode::too_few_points, footprint.id, "has no polygon; left out");

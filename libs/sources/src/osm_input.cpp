@@ -7,6 +7,8 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,9 +56,14 @@ void copy_as_utf8(const fs::path& file, const SingleByteTable& table, int descri
   ByteSource bytes(file);
   std::vector<char> chunk(std::size_t(1) << 20);
   std::string out;
+  // bzip2 packs maps to a tenth of their size or so, and emptiness to a millionth: that would fill the folder.
+  constexpr std::uintmax_t most_per_packed = 100, always_allowed = std::uintmax_t{64} << 20;
+  const std::uintmax_t most = std::max(always_allowed, most_per_packed * fs::file_size(file));
+  std::uintmax_t unpacked = 0;
   bool in_declaration = true;
   for (std::size_t n = chunk.size(); n == chunk.size();) {
     n = bytes.read(chunk);
+    if ((unpacked += n) > most) throw FormatError(file, "unpacks to more than " + std::to_string(most_per_packed) + " times its size, as no map does; if it is one, unpack it first");
     std::string_view text(chunk.data(), n);
     if (in_declaration) text.remove_prefix(std::min(text.size(), text.find('>') + 1));
     in_declaration = false;
@@ -66,31 +73,61 @@ void copy_as_utf8(const fs::path& file, const SingleByteTable& table, int descri
   }
 }
 
+/// libosmium takes whatever follows a stream of bzip2 for another one. Only a file that ends in a zero byte is looked at, which is read as a whole for that.
+std::optional<std::uintmax_t> end_before_padding(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::array<char, 2> start{};
+  char last = 1;
+  if (!stream.read(start.data(), start.size()) || start != std::array{'B', 'Z'} || !stream.seekg(-1, std::ios::end).get(last) || last != 0) return std::nullopt;
+  ByteSource bytes(file);
+  std::vector<char> chunk(std::size_t(1) << 18);
+  while (bytes.read(chunk) == chunk.size()) {}
+  return bytes.padding_begins();
+}
+
+void copy_start(const fs::path& file, std::uintmax_t size, int descriptor) {
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<char> chunk(std::size_t(1) << 18);
+  while (size > 0 && stream.read(chunk.data(), static_cast<std::streamsize>(std::min<std::uintmax_t>(size, chunk.size())))) {
+    write_all(descriptor, {chunk.data(), static_cast<std::size_t>(stream.gcount())});
+    size -= static_cast<std::uintmax_t>(stream.gcount());
+  }
+  if (size > 0) throw IoError(file, "cannot be read");
+}
+
 }  // namespace
 
 OsmInput::OsmInput(const fs::path& file) : path_(file) {
   if (osmium::io::File(file.string()).format() != osmium::io::file_format::xml) return;
   const std::string encoding = foreign_xml_encoding(file);
-  if (encoding.empty()) return;
+  if (encoding.empty()) {
+    if (const auto end = end_before_padding(file)) keep_copy("osm.bz2", [&](int copy) { copy_start(file, *end, copy); });
+    return;
+  }
   const std::optional<SingleByteTable> table = single_byte_table(encoding);
   if (!table) throw FormatError(file, encoding_fault(encoding));
+  keep_copy("osm", [&](int copy) { copy_as_utf8(file, *table, copy); });
+}
+
+void OsmInput::keep_copy(const std::string& format, const std::function<void(int descriptor)>& write) {
+  copy_format_ = format;
   copy_ = nameless_file();
   try {
-    copy_as_utf8(file, *table, copy_);
+    write(copy_);
   } catch (...) {
     ::close(copy_);
     throw;
   }
 }
 
-OsmInput::OsmInput(OsmInput&& other) noexcept : path_(std::move(other.path_)), copy_(std::exchange(other.copy_, -1)) {}
+OsmInput::OsmInput(OsmInput&& other) noexcept : path_(std::move(other.path_)), copy_(std::exchange(other.copy_, -1)), copy_format_(std::move(other.copy_format_)) {}
 
 OsmInput::~OsmInput() {
   if (copy_ >= 0) ::close(copy_);
 }
 
 osmium::io::File OsmInput::file() const {
-  return copy_ < 0 ? osmium::io::File(path_.string()) : osmium::io::File("/proc/self/fd/" + std::to_string(copy_), "osm");
+  return copy_ < 0 ? osmium::io::File(path_.string()) : osmium::io::File("/proc/self/fd/" + std::to_string(copy_), copy_format_);
 }
 
 }  // namespace priormap

@@ -85,6 +85,29 @@ TEST(CityGml, APolygonIsOfEachPartThatRefersToIt) {
   EXPECT_EQ(std::ranges::count(models[0].polygons, false, &ModelPolygon::repeated), 1);
 }
 
+TEST(CityGml, APolygonIsOfEachSolidThatRefersToIt) {
+  const auto body = [](const std::string& geometry) {
+    return "<gml:solidMember><gml:Solid><gml:exterior><gml:CompositeSurface>" + geometry + "</gml:CompositeSurface></gml:exterior></gml:Solid></gml:solidMember>";
+  };
+  const auto bodies = [&](const std::string& a, const std::string& b) { return "<bldg:lod2Solid><gml:CompositeSolid>" + body(a) + body(b) + "</gml:CompositeSolid></bldg:lod2Solid>"; };
+  const std::string stated = member(square("p", 0)), turned_link = member("<gml:OrientableSurface orientation='-'><gml:baseSurface xlink:href='#p'/></gml:OrientableSurface>");
+  const std::string wall = surface("WallSurface", stated);
+  for (const std::string& content : {bodies(stated, turned_link), bodies(turned_link, stated), wall + bodies(link("p"), turned_link), bodies(turned_link, link("p")) + wall}) {
+    const auto polygons = read(document(building(content)))[0].polygons;
+    ASSERT_EQ(polygons.size(), 2u) << content;
+    EXPECT_NE(polygons[0].solid, polygons[1].solid);
+    EXPECT_LT(newell_normal(polygons[0].polygon).dot(newell_normal(polygons[1].polygon)), 0) << content;
+    for (const ModelPolygon& polygon : polygons) {
+      EXPECT_TRUE(polygon.shared);
+      EXPECT_FALSE(polygon.repeated);
+    }
+  }
+  const auto alike = read(document(building(bodies(stated, link("p")))))[0].polygons;   // which of the two it looks into is not said
+  ASSERT_EQ(alike.size(), 2u);
+  EXPECT_TRUE(alike[1].shared);
+  EXPECT_TRUE(alike[1].repeated);
+}
+
 TEST(CityGml, EveryPartAndSurfaceMayStateItsEnvelopeAndIsStillOfItsBuilding) {
   const std::string envelope = "<gml:boundedBy><gml:Envelope srsName='CH1903'/></gml:boundedBy>";
   const auto wall = [&](double z) {
@@ -216,6 +239,35 @@ TEST(CityGml, ImplicitGeometryIsPlacedByMatrixAndReferencePointAndSharedById) {
     std::sort(corners.begin(), corners.end());
     EXPECT_EQ(corners, (std::vector<double>{100, 200, 300}));
   }
+}
+
+TEST(CityGml, TemplatesPlacedBeyondWhatABuildingMayHoldAreRefused) {
+  std::string ring;
+  for (int i = 0; i < 40'000; ++i) ring += std::to_string(i) + " " + std::to_string(i % 2) + " 0 ";
+  const std::string huge = "<gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>" + ring + "0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>";
+  const auto placed = [](const std::string& geometry) {
+    return "<bldg:outerBuildingInstallation><bldg:BuildingInstallation><bldg:lod3ImplicitRepresentation><core:ImplicitGeometry>" + geometry +
+           "</core:ImplicitGeometry></bldg:lod3ImplicitRepresentation></bldg:BuildingInstallation></bldg:outerBuildingInstallation>";
+  };
+  const std::string stated = building(placed("<core:relativeGMLGeometry><gml:MultiSurface gml:id='shape'>" + member(huge) + "</gml:MultiSurface></core:relativeGMLGeometry>"), "a");
+  const auto message = [&](int buildings, int placements) -> std::string {
+    std::string text = stated;
+    for (int b = 0; b < buildings; ++b) {
+      std::string all;
+      for (int i = 0; i < placements; ++i) all += placed("<core:relativeGMLGeometry xlink:href='#shape'/>");
+      text += building(all, "b" + std::to_string(b));
+    }
+    const TemporaryFile file(".gml", document(text));
+    try {
+      read_citygml(file.path(), {}, [](BuildingModel&&) {});
+      return "";
+    } catch (const FormatError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(message(2, 150), "");
+  EXPECT_NE(message(1, 250).find("more than 8 million vertices"), std::string::npos);
+  EXPECT_NE(message(6, 150).find("more than 32 million vertices"), std::string::npos);
 }
 
 TEST(CityGml, HolesOldGmlSyntaxAndInnermostSrsNameAreRead) {

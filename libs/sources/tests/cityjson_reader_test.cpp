@@ -125,6 +125,21 @@ TEST(CityJson, TemplatesArePlacedAndTinReliefIsTerrain) {
   EXPECT_EQ(models[1].polygons[0].surface_class, SurfaceClass::terrain);
 }
 
+TEST(CityJson, TemplatesPlacedBeyondWhatABuildingMayHoldAreRefused) {
+  std::string ring = "0", instances;
+  for (int i = 1; i < 40'000; ++i) ring += "," + std::to_string(i % 3);
+  for (int i = 0; i < 250; ++i)
+    instances += std::string(i ? "," : "") + R"({"type":"GeometryInstance","template":0,"boundaries":[1],"transformationMatrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})";
+  const std::string text = "{" + head + "," + vertices + R"(,"geometry-templates":{"templates":[{"type":"MultiSurface","lod":"3","boundaries":[[[)" + ring +
+                           R"(]]]}],"vertices-templates":[[0,0,0],[1,0,0],[0,1,0]]},"CityObjects":{"b":{"type":"Building","geometry":[)" + instances + "]}}}";
+  try {
+    read(text);
+    ADD_FAILURE() << "was read";
+  } catch (const FormatError& error) {
+    EXPECT_NE(std::string(error.what()).find("more than 8 million vertices"), std::string::npos) << error.what();
+  }
+}
+
 TEST(CityJson, ASequenceGivesEachFeatureItsOwnVertices) {
   const std::string header = R"({"type":"CityJSON","version":"2.0","CityObjects":{},"vertices":[],"transform":{"scale":[1,1,1],"translate":[10,20,30]}})";
   const std::string feature = R"({"type":"CityJSONFeature","id":"f","vertices":[[0,0,0],[1,0,0],[0,1,0]],"CityObjects":{"f":{"type":"Building",

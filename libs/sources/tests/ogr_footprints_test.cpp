@@ -72,6 +72,32 @@ TEST_F(OgrFootprints, PolygonsWithHeightsAndLevels) {
   EXPECT_EQ(read(file, {"", "", "", "key"}).footprints[0].id, "town/A7");
 }
 
+/// The point set of a multipolygon is that of all its polygons (OGC 06-103r4, 6.1.14): only rings of one polygon can be holes.
+TEST_F(OgrFootprints, APolygonWithinAnotherOfAMultipolygonIsNoCourtyard) {
+  const auto ring = [](double low, double high) {
+    const std::string a = std::to_string(11 + low), b = std::to_string(11 + high);
+    return "[[" + a + "," + a + "],[" + b + "," + a + "],[" + b + "," + b + "],[" + a + "," + b + "],[" + a + "," + a + "]]";
+  };
+  const auto area_of = [&](const std::string& polygons) {
+    const Layers layers = read(write_features(feature("", R"({"type":"MultiPolygon","coordinates":[)" + polygons + "]}")), {});
+    double sum = 0;
+    std::vector<Ring2> rings = layers.footprints.at(0).rings;
+    for (Ring2& r : rings)
+      for (Eigen::Vector2d& p : r) p = (p - Eigen::Vector2d(11, 11)) * 1000;
+    for (const Polygon2& polygon : normalize(rings, "", diagnostics_)) sum += area(polygon);
+    return sum;
+  };
+  const std::string block = "[" + ring(0, 0.010) + "]", with_yard = "[" + ring(0, 0.010) + "," + ring(0.002, 0.008) + "]";
+  EXPECT_NEAR(area_of(block + ",[" + ring(0.004, 0.006) + "]"), 100, 1e-6) << "a polygon within another";
+  EXPECT_NEAR(area_of(with_yard + ",[" + ring(0.004, 0.006) + "]"), 100 - 36 + 4, 1e-6) << "an island in the yard";
+  EXPECT_NEAR(area_of(with_yard + ",[" + ring(0.004, 0.006) + "],[" + ring(0.0045, 0.0055) + "]"), 100 - 36 + 4, 1e-6) << "a polygon within the island";
+  EXPECT_NEAR(area_of(block + ",[" + ring(0.005, 0.015) + "]"), 100 + 100 - 25, 1e-6) << "polygons that overlap";
+  EXPECT_NEAR(area_of(block + "," + block), 100, 1e-6) << "twice the same";
+  EXPECT_EQ(diagnostics_.counts().at(DiagnosticCode::intersection_rings), 4u);
+  EXPECT_NEAR(area_of(block + ",[" + ring(0.010, 0.012) + "]"), 100 + 4, 1e-6) << "polygons that touch in a corner";
+  EXPECT_EQ(diagnostics_.counts().at(DiagnosticCode::intersection_rings), 4u);
+}
+
 /// As most offices hand them out.
 TEST_F(OgrFootprints, AShapefileMayLieInAZipArchive) {
   const fs::path zip = folder_ / "town.zip";

@@ -328,16 +328,48 @@ TEST_F(OsmFootprints, CompressedFilesTellOfRemarksAndDeletionsToo) {
   EXPECT_TRUE(warnings.empty());
 }
 
+TEST_F(OsmFootprints, WhatWasDeletedIsNotedWhereverItStandsInTheFile) {
+  const std::string deleted = corners + house(1, "5", " action='delete'");
+  const std::size_t at = osm(deleted).find("action") + std::string("<!---->").size();
+  for (const std::size_t before_boundary : {0, 1, 3, 6, 7, 8, 15, 16, 17, 30}) {
+    const std::string padding = "<!--" + std::string((std::size_t{1} << 18) - at - before_boundary, '.') + "-->";
+    EXPECT_TRUE(read_osm_footprints({write("town.osm", osm(padding + deleted))}, 2, diagnostics_).empty()) << before_boundary;
+  }
+}
+
 TEST_F(OsmFootprints, DamagedCompressionIsNamed) {
   const std::string packed = bzip2(osm(corners + house(1, "5")));
   std::string odd = packed;
   odd[odd.size() / 3] ^= 0x55;
-  for (const auto& [text, cause] : {std::pair(packed.substr(0, packed.size() - 9), "cut short"), {odd, "damaged"}, {packed + "tail", "damaged"}}) {
+  for (const auto& [text, cause] : {std::pair(packed.substr(0, packed.size() - 9), "cut short"), {odd, "damaged"}, {packed + "tail", "damaged"}, {packed + std::string(600, '\0') + "tail", "damaged"}}) {
     try {
       read_osm_footprints({write("town.osm.bz2", text)}, 1, diagnostics_);
       ADD_FAILURE() << cause << " is not noticed";
     } catch (const FormatError& error) {
       EXPECT_NE(std::string(error.what()).find(cause), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(OsmFootprints, ZeroBytesAfterACompressedFileArePadding) {
+  const std::string packed = bzip2(osm(corners + house(1, "5")));
+  for (const std::size_t padding : {std::size_t{1}, std::size_t{512}, std::size_t{1} << 20}) {
+    const fs::path file = write("town.osm.bz2", packed + std::string(padding, '\0'));
+    EXPECT_EQ(read_osm_footprints({file}, 2, diagnostics_).size(), 1u) << padding;
+    EXPECT_TRUE(read_osm_streets(file).empty());
+  }
+}
+
+TEST_F(OsmFootprints, WhatUnpacksToFarMoreThanAMapIsNotCopied) {
+  const std::string declared = "<?xml version='1.0' encoding='windows-1252'?><osm version='0.6'>";
+  const fs::path bomb = write("bomb.osm.bz2", bzip2(declared + std::string(std::size_t{65} << 20, ' ') + "</osm>"));
+  ASSERT_LT(fs::file_size(bomb), 1000u);
+  for (const std::function<void()>& read : {std::function<void()>([&] { read_osm_footprints({bomb}, 2, diagnostics_); }), {[&] { read_osm_streets(bomb); }}}) {
+    try {
+      read();
+      ADD_FAILURE() << "read";
+    } catch (const FormatError& error) {
+      EXPECT_NE(std::string(error.what()).find("unpacks to more than"), std::string::npos) << error.what();
     }
   }
 }

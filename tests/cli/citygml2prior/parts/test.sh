@@ -139,3 +139,40 @@ some "the roof beside it" 209 10.3 19.7 5.3 10.7 107.9 108.1
 sed "0,/<consistsOfBuildingPart>/{s/ClosureSurface/WallSurface/g}" closures.gml >carport.gml
 form="a carport" && build carport.gml
 some "the wall behind it" 63 -0.1 0.1 5.3 9.7 100.3 103.7
+
+# Two solids of one building share a wall by reference, turned or not: nobody sees it, and each solid is closed, so that both look outward.
+# Of the higher one the strip above the lower roof is seen.
+gml_solid() {   # then "class x y z ...", or "link" or "turned" for the shared wall
+  echo "<solidMember><Solid><exterior><CompositeSurface>"
+  local face
+  while read -r face; do
+    case $face in
+      link) echo "<surfaceMember xlink:href='#wall'/>" ;;
+      turned) echo "<surfaceMember><OrientableSurface orientation='-'><baseSurface xlink:href='#wall'/></OrientableSurface></surfaceMember>" ;;
+      stated*) gml_polygon $face | sed "s/<Polygon>/<Polygon id='wall'>/" ;;
+      *) gml_polygon $face ;;
+    esac
+  done
+  echo "</CompositeSurface></exterior></Solid></solidMember>"
+}
+two_solids() {   # LINK: how the second refers
+  echo "<CityModel xmlns:xlink='http://www.w3.org/1999/xlink'><boundedBy><Envelope srsName='urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837'/></boundedBy><cityObjectMember><Building id='b'>"
+  [ "$1" = surface ] && echo "<boundedBy><WallSurface><lod2MultiSurface><MultiSurface>$(gml_polygon stated $shared | sed "s/<Polygon>/<Polygon id='wall'>/")</MultiSurface></lod2MultiSurface></WallSurface></boundedBy>"
+  echo "<lod2Solid><CompositeSolid>"
+  { faces 0 0 10 20 100 108 | grep -v "Surface $shared\$"; case $1 in surface) echo link ;; *) echo "stated $shared" ;; esac; } | gml_solid
+  { faces 10 0 20 20 100 112 | grep -v "WallSurface 10 20 100 10 0 100"; echo "WallSurface 10 20 108 10 0 108 10 0 112 10 20 112"; case $1 in surface) echo link ;; *) echo "$1" ;; esac; } | gml_solid
+  echo "</CompositeSolid></lod2Solid></Building></cityObjectMember></CityModel>"
+}
+shared="10 0 100 10 20 100 10 20 108 10 0 108"
+for form in turned link surface; do
+  two_solids $form >two.gml
+  build two.gml
+  none "the wall between two solids" 9.9 10.1 0.3 19.7 100.3 107.7
+  some "the wall above the lower roof" 273 9.9 10.1 0.3 19.7 108.3 111.7
+  some "the lower roof" 741 0.3 9.7 0.3 19.7 107.9 108.1
+  some "the higher roof" 741 10.3 19.7 0.3 19.7 111.9 112.1
+  some "the outer wall of the first" 585 -0.1 0.1 0.3 19.7 100.3 107.7
+  some "the outer wall of the second" 897 19.9 20.1 0.3 19.7 100.3 111.7
+  none "a floor" 0.3 19.7 0.3 19.7 99.9 100.1
+done
+

@@ -26,6 +26,7 @@ enum class DiagnosticCode : int {
   degenerate_geometry = 705,    ///< no area or no extent left after cleaning
   implausible_size = 706,       ///< larger than any building: coordinates gone wrong
   repeated_outline = 707,       ///< the same outline as another building's
+  far_from_the_rest = 708,      ///< where the prior's CRS is not made for, far from all others
 };
 
 /// What went wrong with single features of an otherwise good file. Not thread-safe: one per thread, then `merge`.

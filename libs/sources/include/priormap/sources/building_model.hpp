@@ -16,7 +16,9 @@ struct ModelPolygon {
   SurfaceClass surface_class = SurfaceClass::unclassified;  ///< unclassified: the file names no boundary surface
   bool closed = true;                                       ///< every ring repeated its first point (CityJSON: by definition)
   int part = 0;                                             ///< 0: of the building itself, 1...: of its parts
-  bool repeated = false;                                    ///< another part, listed before, states it too, looking the same way: a face of both, to be built once
+  int solid = 0;                                            ///< that it bounds, by a number of the model's; 0: none
+  bool repeated = false;                                    ///< another part or solid, listed before, states it too, looking the same way: a face of both, to be built once
+  bool shared = false;                                      ///< several solids refer to it, and not each may have said which way it looks from there
 };
 
 enum class ModelKind {

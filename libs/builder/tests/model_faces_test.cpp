@@ -1,0 +1,131 @@
+#include "model_faces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "face_index.hpp"
+
+namespace priormap {
+namespace {
+
+ModelPolygon polygon(Ring3 ring, int solid) {
+  ModelPolygon stated;
+  stated.polygon.exterior = std::move(ring);
+  stated.solid = solid;
+  return stated;
+}
+ModelPolygon turned(ModelPolygon stated) {
+  std::ranges::reverse(stated.polygon.exterior);
+  return stated;
+}
+
+/// The faces of a box, looking outward: bottom, top, then the walls to the south, east, north and west.
+std::vector<ModelPolygon> box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, int solid) {
+  const auto at = [&](int x, int y, int z) { return Eigen::Vector3d(x ? high.x() : low.x(), y ? high.y() : low.y(), z ? high.z() : low.z()); };
+  return {polygon({at(0, 0, 0), at(0, 1, 0), at(1, 1, 0), at(1, 0, 0)}, solid), polygon({at(0, 0, 1), at(1, 0, 1), at(1, 1, 1), at(0, 1, 1)}, solid),
+          polygon({at(0, 0, 0), at(1, 0, 0), at(1, 0, 1), at(0, 0, 1)}, solid), polygon({at(1, 0, 0), at(1, 1, 0), at(1, 1, 1), at(1, 0, 1)}, solid),
+          polygon({at(1, 1, 0), at(0, 1, 0), at(0, 1, 1), at(1, 1, 1)}, solid), polygon({at(0, 1, 0), at(0, 0, 0), at(0, 0, 1), at(0, 1, 1)}, solid)};
+}
+
+BuildingModel model_of(std::vector<ModelPolygon> a, const std::vector<ModelPolygon>& b) {
+  BuildingModel model;
+  model.polygons = std::move(a);
+  model.polygons.insert(model.polygons.end(), b.begin(), b.end());
+  return model;
+}
+
+constexpr std::size_t east = 3, west = 5, number_of_faces = 6;
+
+/// Two boxes side by side; the second has the first's wall as its own, as the file states it or turned.
+BuildingModel two_boxes(bool turns) {
+  BuildingModel model = model_of(box({0, 0, 0}, {10, 10, 5}, 1), box({10, 0, 0}, {20, 10, 5}, 2));
+  ModelPolygon wall = model.polygons[east];
+  if (turns) wall = turned(wall);
+  wall.solid = 2;
+  wall.repeated = !turns;
+  wall.shared = model.polygons[east].shared = true;
+  model.polygons[number_of_faces + west] = wall;
+  return model;
+}
+
+TEST(ModelFaces, AWallThatTwoSolidsShareLooksOutOfEach) {
+  for (const bool turns : {false, true}) {
+    Diagnostics diagnostics;
+    const std::vector<ModelFace> faces = model_faces(two_boxes(turns), diagnostics);
+    EXPECT_DOUBLE_EQ(faces[east].normal.x(), 1);
+    EXPECT_DOUBLE_EQ(faces[number_of_faces + west].normal.x(), -1);
+    EXPECT_EQ(closed_solids(faces).size(), 2u);
+    EXPECT_EQ(diagnostics.total(), 0u);
+  }
+}
+
+TEST(ModelFaces, ASharedFaceOfAnOpenSolidStaysAsItIsStated) {
+  // A roof without floor and walls below a canopy that shares a piece of it.
+  BuildingModel model = model_of(box({0, 0, 0}, {20, 20, 5}, 1), box({0, 0, 4}, {3, 3, 5}, 2));
+  model.polygons.erase(model.polygons.begin());
+  ModelPolygon piece = model.polygons[5 + 1];
+  piece.solid = 1;
+  piece.shared = model.polygons[5 + 1].shared = true;
+  model.polygons.push_back(piece);
+  Diagnostics diagnostics;
+  EXPECT_DOUBLE_EQ(model_faces(model, diagnostics).back().normal.z(), 1);
+}
+
+TEST(ModelFaces, ASolidThatLooksInwardIsTurnedAndNotTheOneBesideIt) {
+  BuildingModel model = model_of(box({0, 0, 0}, {10, 10, 5}, 1), box({30, 0, 0}, {40, 10, 5}, 2));
+  for (std::size_t i = 0; i < number_of_faces; ++i) model.polygons[i] = turned(model.polygons[i]);
+  Diagnostics diagnostics;
+  const std::vector<ModelFace> faces = model_faces(model, diagnostics);
+  for (const std::size_t first : {std::size_t{0}, number_of_faces}) EXPECT_DOUBLE_EQ(faces[first + east].normal.x(), 1);
+  EXPECT_EQ(diagnostics.counts().at(DiagnosticCode::polygon_wrong_orientation), 1u);
+}
+
+TEST(ModelFaces, AnOpenSolidLeavesTheOthersClosed) {
+  BuildingModel model = model_of(box({0, 0, 0}, {10, 10, 5}, 1), box({30, 0, 0}, {40, 10, 5}, 2));
+  model.polygons.pop_back();
+  Diagnostics diagnostics;
+  EXPECT_EQ(closed_solids(model_faces(model, diagnostics)), (std::set<SolidKey>{{0, 1}}));
+}
+
+std::size_t left_of(const FaceIndex& index, const ModelFace& face) {
+  std::vector<Eigen::Vector3d> points;
+  for (double y = 1; y < 9.5; ++y) points.emplace_back(face.polygon.exterior[0].x(), y, 0.5 * (face.polygon.exterior[0].z() + face.polygon.exterior[2].z()));
+  std::vector<Eigen::Vector3d> normals(points.size(), face.normal);
+  index.remove_hidden(0, face, points, normals);
+  return points.size();
+}
+
+TEST(FaceIndex, AWallBetweenTwoSolidsOfABuildingIsHidden) {
+  for (const bool turns : {false, true}) {
+    Diagnostics diagnostics;
+    const std::vector<ModelFace> faces = model_faces(two_boxes(turns), diagnostics);
+    FaceIndex index;
+    index.add(0, faces);
+    index.finish();
+    EXPECT_EQ(left_of(index, faces[east]), 0u);
+    EXPECT_EQ(left_of(index, faces[number_of_faces + west]), 0u);
+    EXPECT_EQ(left_of(index, faces[west]), 9u);
+    EXPECT_EQ(left_of(index, faces[number_of_faces + east]), 9u);
+  }
+}
+
+TEST(FaceIndex, ASheetIsNotHiddenByItsOtherSideThoughTheBodyStatesThatToo) {
+  // A fence of 3 cm, a part of its own; the body, which is no solid, names its eastern side.
+  BuildingModel model = model_of(box({0, 0, 0}, {0.03, 10, 5}, 0), {});
+  for (ModelPolygon& stated : model.polygons) stated.part = 1;
+  ModelPolygon named = model.polygons[east];
+  named.part = 0;
+  model.polygons[east].repeated = true;
+  model.polygons.insert(model.polygons.begin(), named);
+  Diagnostics diagnostics;
+  const std::vector<ModelFace> faces = model_faces(model, diagnostics);
+  FaceIndex index;
+  index.add(0, faces);
+  index.finish();
+  EXPECT_EQ(left_of(index, faces[0]), 9u);
+  EXPECT_EQ(left_of(index, faces[1 + west]), 9u);
+}
+
+}  // namespace
+}  // namespace priormap
