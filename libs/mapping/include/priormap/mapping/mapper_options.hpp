@@ -105,7 +105,7 @@ struct EstimateOptions {
   double common_share = 0.06;
   double wall_common_share = 0.06;
   double ground_common_share = 0.01;
-  double tilt_scale = 0.55;
+  double tilt_scale = 0.45;
   double kernel_width = 3;
   double ground_kernel_width = 2.5;
   int passes = 3;
