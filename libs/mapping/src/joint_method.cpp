@@ -54,7 +54,7 @@ class JointMethod : public MappingMethod {
   void follow(OdometryStep step, MappedScan& mapped, const std::function<SurfelCloud()>& surfels) {
     step.T_odom_sensor = T_odom_own_ * step.T_odom_sensor;
     if (!records_.empty()) mapped.local = step.figures;
-    if (step.began_anew) tracker_.begin_anew(step.unknown_way_m);
+    if (step.began_anew) tracker_.begin_anew({T_odom_own_ * step.lost.p_odom, step.lost.radius_m});
     const bool lost = !records_.empty() && !step.joined;
     if (!lost) tracker_.go_on(step.T_odom_sensor);
     if (!lost && tracker_.asks()) {

@@ -154,24 +154,20 @@ std::optional<OdometryStep> Odometry::found_around(const SurfelCloud& scan, cons
 
 bool Odometry::gap_is_told(double middle_s) const { return middle_s - middle_last_s_ > std::max(longest_steady_s, 3 * usual_period_s_); }
 
-/// Where no turn lasts that long.
+/// By the middle of the sweep, where no turn lasts that long.
 Eigen::Isometry3d Odometry::straight_on(double middle_s) const {
   constexpr double longest_s = 10;
   Vector6d velocity = velocity_;
   velocity.head<3>().setZero();
-  return moved_on(T_odom_last_, velocity, std::clamp(middle_s - middle_last_s_, 0.0, longest_s));
+  return moved_on(T_odom_last_, velocity, std::min(middle_s - middle_last_s_, longest_s));
 }
 
-/// Who was lost so long may have gone anywhere by then, and faster than before.
-double Odometry::unknown_way_m(double middle_s) const {
+/// Who was lost so long may have gone anywhere by then, and faster than before; but what is too far to look for all around lies straight on.
+LostPlace Odometry::lost_place(double middle_s) const {
   constexpr double least_m = 20, faster_m_s = 5, farthest_m = 100;
-  const double lost_s = std::max(middle_s - middle_last_s_, num_lost_ * usual_period_s_);
-  return std::min(farthest_m, least_m + lost_s * (velocity_.tail<3>().norm() + faster_m_s));
-}
-
-void Odometry::follow_apart_from(const Eigen::Isometry3d& T_odom_sensor, const Vector6d& velocity) {
-  apart_ = std::make_unique<Odometry>(options_, velocity);
-  apart_->T_odom_last_ = T_odom_sensor;
+  const double lost_s = std::max(middle_s - middle_last_s_, num_lost_ * usual_period_s_), speed_m_s = velocity_.tail<3>().norm();
+  const bool is_far = least_m + lost_s * speed_m_s > farthest_m;
+  return {(is_far ? straight_on(middle_s) : T_odom_last_).translation(), std::min(farthest_m, least_m + lost_s * (speed_m_s + faster_m_s))};
 }
 
 /// The scans from here on are followed apart, from where the first of them is guessed to be. Where the stamps tell of a gap, the street beyond it is another: it lies straight on, and the old one
@@ -182,29 +178,26 @@ void Odometry::get_lost(const Eigen::Isometry3d& guess, double middle_s) {
   num_to_give_up_ = told ? patience_beyond_gap : usual_patience;
   Vector6d velocity = velocity_;
   if (told) velocity.head<3>().setZero();
-  follow_apart_from(told ? straight_on(middle_s) : guess, velocity);
+  apart_ = std::make_unique<Odometry>(options_, velocity);
+  apart_->T_odom_last_ = told ? straight_on(middle_s) : guess;
 }
 
 /// While lost. A gap in the recording, perhaps: the old street may never come back.
-OdometryStep Odometry::followed_apart(const SurfelCloud& scan, double middle_s) {
-  const auto follow = [&] {
-    SurfelCloud own = scan;
-    apart_->stamp_goes_on_ = stamp_goes_on_;
-    return apart_->step_in_middle(own, middle_s);
-  };
-  OdometryStep found = follow();
-  if (apart_->apart_) {   // lost there as well: that was elsewhere, and where this is the motion before the first loss tells best. Where the old street is back, it is soon found if it is to be
-    constexpr int patience_elsewhere = 12;   // scans: one search
-    num_to_give_up_ = std::min({num_to_give_up_, apart_->num_to_give_up_ + 1, patience_elsewhere});
-    follow_apart_from(straight_on(middle_s), apart_->apart_->velocity_);
-    found = follow();
+OdometryStep Odometry::followed_apart(SurfelCloud scan, double middle_s) {
+  constexpr int patience_after_another = 12, least_street = 20;   // scans: one search for the old street; what is no passing lorry
+  apart_->stamp_goes_on_ = stamp_goes_on_;
+  OdometryStep found = apart_->step_in_middle(scan, middle_s);
+  if (apart_->apart_) {   // lost there as well: what came since then counts. If that was another street, the old one is back or never comes
+    num_to_give_up_ = std::min(num_to_give_up_, apart_->num_to_give_up_ + 1);
+    if (apart_->num_in_map_ >= least_street) num_to_give_up_ = std::min(num_to_give_up_, patience_after_another);
+    apart_ = std::move(apart_->apart_);
   }
   ++num_lost_;
   found.joined = false;
   found.began_anew = --num_to_give_up_ == 0;
   if (!found.began_anew) return found;
   found.num_followed = apart_->num_in_map_ - 1;
-  found.unknown_way_m = unknown_way_m(middle_s);
+  found.lost = lost_place(middle_s);
   const auto begun = std::exchange(apart_, nullptr);
   begun->stamp_last_s_ = stamp_last_s_;
   *this = std::move(*begun);

@@ -12,13 +12,19 @@
 
 namespace priormap {
 
+/// Around where who was lost may be.
+struct LostPlace {
+  Eigen::Vector3d p_odom = Eigen::Vector3d::Zero();
+  double radius_m = 0;
+};
+
 /// Where a scan was taken by the scans before it.
 struct OdometryStep {
   Eigen::Isometry3d T_odom_sensor = Eigen::Isometry3d::Identity();   ///< at the stamp
   double middle_s = 0;                       ///< of the sweep, from the stamp: the pose there is what matching tells, from where the velocity leads to the stamp
   bool joined = false;                       ///< matched; otherwise lost (for the first scan there is nothing to match)
   bool began_anew = false;                   ///< the old map was given up for one of the scans since: how far that lies off is not known. Such a scan has not joined either
-  double unknown_way_m = 0;                  ///< where it began anew: so far from where it now says it is the sensor may be
+  LostPlace lost;                            ///< where it began anew
   int num_followed = 0;                      ///< where it began anew: lost scans right before this one that are of the new map
   Matrix6d information = Matrix6d::Zero();   ///< of the match, tangent in sensor axes
   Vector6d velocity = Vector6d::Zero();      ///< rad/s, m/s in sensor axes, by which the motion within the sweep was undone
@@ -62,10 +68,9 @@ class Odometry {
   OdometryStep matched_in_motion(const SurfelCloud& raw, SurfelCloud& scan, double duration_s);
   OdometryStep found_again(const SurfelCloud& scan);
   Eigen::Isometry3d straight_on(double middle_s) const;
-  double unknown_way_m(double middle_s) const;
+  LostPlace lost_place(double middle_s) const;
   void get_lost(const Eigen::Isometry3d& guess, double middle_s);
-  void follow_apart_from(const Eigen::Isometry3d& T_odom_sensor, const Vector6d& velocity);
-  OdometryStep followed_apart(const SurfelCloud& scan, double middle_s);
+  OdometryStep followed_apart(SurfelCloud scan, double middle_s);
   bool find_beyond_gap(const SurfelCloud& raw, SurfelCloud& scan, OdometryStep& found, double duration_s);
   std::optional<OdometryStep> found_straight_on(const SurfelCloud& scan);
   std::optional<OdometryStep> found_around(const SurfelCloud& scan, const OdometryStep& found);

@@ -42,6 +42,7 @@ class PriorSurfels {
     return targets;
   }
   std::array<const SurfelMap*, num_layers> maps() const { return {&layers_[of_features], &layers_[of_the_rest]}; }
+  const SurfelMap& ground() const { return layers_[of_the_rest]; }   ///< among other things, but no roofs of features
 
  private:
   struct SquaresOfSigmas {

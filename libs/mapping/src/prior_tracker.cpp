@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <functional>
 
 #include <priormap/pointcloud/slope.hpp>
 #include <priormap/registration/likely_places.hpp>
@@ -16,7 +18,6 @@ namespace {
 
 // Scores a surfel.
 constexpr double clear_gain = 0.02, least_score = 0.01;
-constexpr std::size_t most_places = 40;   // that are compared
 
 double translation_information(const Matrix6d& information) { return information.bottomRightCorner<3, 3>().trace(); }
 
@@ -38,7 +39,7 @@ bool are_near(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double nea
 }  // namespace
 
 PriorTracker::PriorTracker(const TrackingOptions& options, double scan_voxel_m, const std::optional<NearTiles>& prior, const Eigen::Isometry3d& T_map_first)
-    : options_(options), scan_voxel_m_(scan_voxel_m), registration_(options.registration), T_map_odom_(T_map_first) {
+    : options_(options), scan_voxel_m_(scan_voxel_m), registration_(options.registration), T_map_odom_(T_map_first), T_map_odom_lost_(T_map_first) {
   if (prior) prior_.emplace(*prior, PriorSurfels(options.prior));
 }
 
@@ -65,8 +66,20 @@ void PriorTracker::propose_places(const SurfelCloud& scan, const Eigen::Isometry
   if (located_) {
     for (const ScoredResult& other : registration_.search(scan, targets, T_given, options_.search, T_given)) propose(other.match.T_map_scan);
   } else {
-    for (const Eigen::Isometry3d& T : likely_places(scan, map.maps(), T_start, unknown_way_m_, most_places)) propose(registration_.align(scan, targets, T).T_map_scan);
+    for (const Eigen::Isometry3d& T : places_all_around(scan, T_odom_sensor, map)) propose(T);
   }
+}
+
+std::vector<Eigen::Isometry3d> PriorTracker::places_all_around(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
+  constexpr std::size_t most_places = 40;
+  constexpr double farthest_m = 120;   // scans reach on from there, and more of the prior is not held
+  const double radius_m = std::min(farthest_m, lost_.radius_m + (T_odom_sensor.translation() - lost_.p_odom).norm());
+  const auto targets = map.targets(options_.prior_sigma_m, prior_weights_);
+  Eigen::Isometry3d centre = T_map_odom_lost_ * T_odom_sensor;
+  centre.translation().head<2>() = centre_of_search().head<2>();   // who faces the other way has gone the other way
+  std::vector<Eigen::Isometry3d> places = likely_places(scan, map.maps(), map.ground(), centre, radius_m, most_places);
+  for (Eigen::Isometry3d& T : places) T = registration_.align(scan, targets, T).T_map_scan;
+  return places;
 }
 
 /// Registers each hypothesis anew, from where the odometry leads it, and adds how well it fits.
@@ -86,10 +99,10 @@ const PriorTracker::Hypothesis& PriorTracker::Hypotheses::best() const { return 
 
 double PriorTracker::Hypotheses::best_score_elsewhere(const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor) const {
   constexpr double near_m = 3, near_rad = 0.1;
-  double best = -1;
+  std::optional<double> best;
   for (const Hypothesis& h : places)
-    if (!are_near(h.T_map_odom * T_odom_sensor, T_map_sensor, near_m, near_rad)) best = std::max(best, score(h));
-  return best;
+    if (!are_near(h.T_map_odom * T_odom_sensor, T_map_sensor, near_m, near_rad)) best = std::max(best.value_or(score(h)), score(h));
+  return best.value_or(std::numeric_limits<double>::infinity());
 }
 
 /// The pose given by the user is left for another only if the scans of the first stretch fit clearly better there. Beyond a gap the drive is where they fit about as well as they did before:
@@ -106,9 +119,9 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
   const int enough = std::min(4, options_.start_keyframes);
   const bool fits = score > std::max(least_score, usual_score_ - usual_loss);
   if (++num_heard_ >= enough) located_ = located_ || (fits && score - hypotheses_.best_score_elsewhere(T_map_odom_ * T_odom_sensor, T_odom_sensor) > clear_gain);
-  if (num_heard_ % enough == 0 && is_farther(score, T_odom_sensor)) {
+  if (num_heard_ % enough == 0 && takes_farther_place(score, T_odom_sensor)) {
     score = hypotheses_.score(hypotheses_.places.front());
-  } else if (num_heard_ % enough == 0 && unknown_way_m_ == 0 && score < least_score) {
+  } else if (num_heard_ % enough == 0 && num_heard_ + enough <= options_.start_keyframes && !lost_once_ && !started_elsewhere_ && score < least_score) {
     look_farther(scan, T_odom_sensor, map);
   }
   const bool in_vain = num_heard_ >= enough && !located_ && !fits;
@@ -119,23 +132,19 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
     usual_score_ = score;
   } else {
     T_map_odom_ = T_map_odom_lost_;
-    lost_step_m_ = std::min(2 * lost_step_m_, options_.keyframe_m);   // what was not found may not be there for long
+    lost_step_m_ = std::max(lost_step_m_, std::min(2 * lost_step_m_, options_.keyframe_m));   // what was not found may not be there for long
     look_anew();
   }
 }
 
 /// Where the start that the user gave does not fit at all, it may be wrong by more than it should be.
 void PriorTracker::look_farther(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
-  constexpr double start_radius_m = 50;
-  const double radius_m = start_radius_m + T_odom_sensor.translation().norm();   // who faces the other way goes the other way
-  const auto targets = map.targets(options_.prior_sigma_m, prior_weights_);
   farther_ = {};
-  for (const Eigen::Isometry3d& T : likely_places(scan, map.maps(), T_map_odom_ * T_odom_sensor, radius_m, most_places))
-    farther_.places.push_back({registration_.align(scan, targets, T).T_map_scan * T_odom_sensor.inverse(), 0});
+  for (const Eigen::Isometry3d& T : places_all_around(scan, T_odom_sensor, map)) farther_.places.push_back({T * T_odom_sensor.inverse(), 0});
 }
 
 /// But the user is believed unless one place is right beyond doubt: then it takes the place of those near the start.
-bool PriorTracker::is_farther(double score_near_start, const Eigen::Isometry3d& T_odom_sensor) {
+bool PriorTracker::takes_farther_place(double score_near_start, const Eigen::Isometry3d& T_odom_sensor) {
   constexpr double beyond_doubt = 0.03;   // a surfel
   if (farther_.places.empty()) return false;
   const Hypothesis best = farther_.best();
@@ -148,10 +157,12 @@ bool PriorTracker::is_farther(double score_near_start, const Eigen::Isometry3d& 
   return started_elsewhere_ = true;
 }
 
-void PriorTracker::begin_anew(double unknown_way_m) {
+void PriorTracker::begin_anew(const LostPlace& lost) {
   constexpr double step_m = 3;
-  unknown_way_m_ = unknown_way_m;
+  if (!hypotheses_.places.empty() && located_) usual_score_ = hypotheses_.score(hypotheses_.places.front());   // so far
   T_map_odom_lost_ = T_map_odom_;
+  lost_ = lost;
+  lost_once_ = true;
   lost_step_m_ = std::min(step_m, options_.search_step_m);
   look_anew();
 }
@@ -167,7 +178,7 @@ void PriorTracker::look_anew() {
 
 void PriorTracker::exchange(StateArchive& archive) {
   if (prior_) archive(*prior_);
-  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_.places, hypotheses_.num_surfels, farther_.places, farther_.num_surfels, unknown_way_m_, T_map_odom_lost_, lost_step_m_, located_, started_elsewhere_, usual_score_, num_heard_);
+  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_.places, hypotheses_.num_surfels, farther_.places, farther_.num_surfels, T_map_odom_lost_, lost_, lost_step_m_, lost_once_, located_, started_elsewhere_, usual_score_, num_heard_);
 }
 
 void PriorTracker::go_on(const Eigen::Isometry3d& T_odom_sensor) {
@@ -206,7 +217,8 @@ std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, co
   const std::size_t stride = num_heard_ < options_.start_keyframes ? 1 : (whole_scan.size() + most_surfels - 1) / most_surfels;
   const SurfelCloud scan = without_roofs(every(whole_scan, stride), guess.linear(), scan_voxel_m_);
   if (scan.empty()) return std::nullopt;
-  const PriorSurfels& map = prior_->around(guess.translation());
+  const bool looks_all_around = !located_ || !farther_.places.empty();
+  const PriorSurfels& map = prior_->around(looks_all_around ? centre_of_search() : guess.translation());   // no place is to be preferred
   const auto targets = map.targets(options_.prior_sigma_m, prior_weights_);
   if (num_heard_ < options_.start_keyframes) compare_hypotheses(scan, T_odom_sensor, map);
   const Eigen::Isometry3d T_pred = T_map_odom_ * T_odom_sensor;

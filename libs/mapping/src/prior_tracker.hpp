@@ -8,6 +8,7 @@
 #include <priormap/mapping/prior_window.hpp>
 #include <priormap/registration/register_joint.hpp>
 
+#include "odometry.hpp"
 #include "prior_surfels.hpp"
 
 namespace priormap {
@@ -31,8 +32,8 @@ class PriorTracker {
   bool asks() const;
   /// Where it `asks`. @return what the prior says; none to a scan without surfels
   std::optional<PriorMatch> follow(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor);
-  /// The odometry has a gap: the next scans are looked for around their poses, until they fit clearly. @param unknown_way_m  how far from there, in any direction and turned anyhow
-  void begin_anew(double unknown_way_m);
+  /// The odometry has a gap: the next scans are looked for, in any direction and turned anyhow, until they fit clearly. @param lost  around there, and as far again as the way since
+  void begin_anew(const LostPlace& lost);
   /// Whether the drive has been found, since the odometry began anew. At first it is where the user says.
   bool is_located() const { return located_; }
   /// Whether the drive has been found far from where the user says that it starts: poses before this one are to be known from here.
@@ -57,8 +58,10 @@ class PriorTracker {
   void propose_places(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
   void compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
   void hear(Hypotheses& hypotheses, const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
+  Eigen::Vector3d centre_of_search() const { return T_map_odom_lost_ * lost_.p_odom; }
+  std::vector<Eigen::Isometry3d> places_all_around(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
   void look_farther(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
-  bool is_farther(double score_near_start, const Eigen::Isometry3d& T_odom_sensor);
+  bool takes_farther_place(double score_near_start, const Eigen::Isometry3d& T_odom_sensor);
 
   PriorMatch word_of(const JointResult& match, std::size_t num_surfels) const;
   Matrix6d predicted_covariance(const Eigen::Isometry3d& T_odom_sensor) const;
@@ -76,9 +79,11 @@ class PriorTracker {
   PriorSurfels::Weights prior_weights_ = PriorSurfels::unweighted;
   Hypotheses hypotheses_;                          // where the drive may have begun; the first is the one given
   Hypotheses farther_;                             // where else, should that be wrong by far
-  double unknown_way_m_ = 0;                       // since the odometry began anew: how far from there the drive may be; 0: it did not
-  Eigen::Isometry3d T_map_odom_lost_ = Eigen::Isometry3d::Identity();   // there: around it is looked for
+  // Where to look all around: at the start, or where the odometry lost the drive.
+  Eigen::Isometry3d T_map_odom_lost_;              // as it was there
+  LostPlace lost_{.radius_m = 50};
   double lost_step_m_ = 0;                         // way between scans that are matched to the prior while it is not located
+  bool lost_once_ = false;
   bool located_ = true;
   bool started_elsewhere_ = false;
   double usual_score_ = 0.1;   // a surfel, where the drive was

@@ -137,7 +137,7 @@ Scan scan_of(const street::World& world, const Eigen::Isometry3d& T_map_sensor, 
   return scan;
 }
 
-/// For forty scans a recording shows another street, and when its own is back, that is round a corner, forty metres from where the motion before would have led.
+/// For forty scans a recording shows another street, and when its own is back, that is round a corner, 16 m from where the motion before would have led, at a right angle to it.
 TEST_F(Street, ADriveIsFoundAgainRoundACornerBeyondScansOfElsewhere) {
   constexpr std::size_t before = 14, elsewhere = 40, after = 35, most_until_anchored = 30;
   const street::World own = quarter(), other = street::town(60, 3);

@@ -2,18 +2,22 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <numbers>
 #include <optional>
+#include <priormap/pointcloud/slope.hpp>
 #include <priormap/registration/likely_places.hpp>
 #include <set>
 #include <tuple>
+#include <vector>
 
 namespace priormap {
 namespace {
 
 constexpr double cell_m = 1, step_rad = 0.025, range_m = 60;
 constexpr int num_sectors = 8;   // of the directions that a wall may face, either side alike
-constexpr double steepest_wall = 0.35, least_level = 0.9;   // z of the normal
+constexpr double least_level = 0.9;   // z of the normal
 
 /// A piece of wall seen from above. `facing`: angle of its normal, which has no sign.
 struct Wall {
@@ -21,7 +25,7 @@ struct Wall {
   double facing;
 };
 
-bool is_wall(const Eigen::Vector3d& normal) { return !normal.isZero(0) && std::abs(normal.z()) < steepest_wall; }
+bool is_wall_of(const Eigen::Vector3d& normal) { return !normal.isZero(0) && is_wall(static_cast<float>(normal.z())); }
 double facing(const Eigen::Vector3d& normal) { return std::atan2(normal.y(), normal.x()); }
 int sector(double facing) {
   const int s = static_cast<int>(std::floor(facing * num_sectors / std::numbers::pi)) % num_sectors;
@@ -40,7 +44,7 @@ struct LevelScan {
     for (std::size_t i = 0; i < scan.size(); ++i) {
       const Eigen::Vector3d p = R * (scan.origin + scan.surfels[i].mean.cast<double>()), n = R * scan.normals[i].cast<double>();
       const double range = p.head<2>().norm();
-      if (is_wall(n) && range > nearest_m && range < range_m) {
+      if (is_wall_of(n) && range > nearest_m && range < range_m) {
         const Wall wall{p.head<2>(), facing(n)};
         const Eigen::Vector2i cell = (wall.p / cell_m).array().floor().cast<int>();
         if (seen.insert({cell.x(), cell.y(), sector(wall.facing)}).second) walls.push_back(wall);
@@ -60,15 +64,17 @@ class WallImage {
  public:
   static constexpr int num_levels = 4;
 
-  WallImage(std::span<const SurfelMap* const> maps, const Eigen::Vector2d& centre, double half_m)
+  WallImage(std::span<const SurfelMap* const> maps, const SurfelMap& ground, const Eigen::Vector2d& centre, double half_m)
       : corner_(centre - Eigen::Vector2d::Constant(half_m)), width_(static_cast<int>(std::ceil(2 * half_m / cell_m)) + 1) {
     const std::size_t cells = std::size_t(width_) * std::size_t(width_);
     for (auto& level : levels_) level.assign(cells * num_sectors, 0);
     lowest_.assign(cells, no_ground);
     for (const SurfelMap* map : maps) {
-      const PointCloud points = map->points(Eigen::Vector3d(corner_.x(), corner_.y(), 0));
-      for (std::size_t i = 0; i < points.size(); ++i) add(points.xyz[i].cast<double>(), points.normal[i].cast<double>());
+      const PointCloud points = from_corner(*map);
+      for (std::size_t i = 0; i < points.size(); ++i) add_wall(points.xyz[i].cast<double>(), points.normal[i].cast<double>());
     }
+    const PointCloud points = from_corner(ground);
+    for (std::size_t i = 0; i < points.size(); ++i) add_ground(points.xyz[i].cast<double>(), points.normal[i].cast<double>());
     for (std::size_t l = 1; l < num_levels; ++l) pool(levels_[l - 1], levels_[l], 1 << (l - 1));
   }
 
@@ -95,21 +101,29 @@ class WallImage {
 
   std::size_t index(int sector, int x, int y) const { return (std::size_t(sector) * std::size_t(width_) + std::size_t(y)) * std::size_t(width_) + std::size_t(x); }
 
-  /// @param p  from the corner in x and y
-  void add(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
+  PointCloud from_corner(const SurfelMap& map) const { return map.points(Eigen::Vector3d(corner_.x(), corner_.y(), 0)); }
+  /// One from the edge at least. @param p  from the corner in x and y
+  std::optional<Eigen::Vector2i> cell_within(const Eigen::Vector3d& p) const {
     const Eigen::Vector2i c = (p.head<2>() / cell_m).array().floor().cast<int>();
-    if (c.minCoeff() < 1 || c.maxCoeff() >= width_ - 1) return;
-    if (std::abs(normal.z()) > least_level) {
-      float& lowest = lowest_[std::size_t(c.y()) * std::size_t(width_) + std::size_t(c.x())];
-      lowest = std::min(lowest, static_cast<float>(p.z()));
-    }
-    if (!is_wall(normal)) return;
+    return c.minCoeff() < 1 || c.maxCoeff() >= width_ - 1 ? std::nullopt : std::optional(c);
+  }
+
+  void add_ground(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
+    const auto c = cell_within(p);
+    if (!c || std::abs(normal.z()) < least_level) return;
+    float& lowest = lowest_[std::size_t(c->y()) * std::size_t(width_) + std::size_t(c->x())];
+    lowest = std::min(lowest, static_cast<float>(p.z()));
+  }
+
+  void add_wall(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
+    const auto c = cell_within(p);
+    if (!c || !is_wall_of(normal)) return;
     has_walls_ = true;
     const int own = sector(facing(normal));
     for (int s = own - 1; s <= own + 1; ++s)
       for (int y = -1; y <= 1; ++y)
         for (int x = -1; x <= 1; ++x) {
-          std::uint8_t& value = levels_[0][index((s + num_sectors) % num_sectors, c.x() + x, c.y() + y)];
+          std::uint8_t& value = levels_[0][index((s + num_sectors) % num_sectors, c->x() + x, c->y() + y)];
           value = std::max<std::uint8_t>(value, x == 0 && y == 0 ? 2 : 1);
         }
   }
@@ -180,11 +194,11 @@ void descend(const TurnedWalls& walls, const WallImage& image, std::size_t level
 
 }  // namespace
 
-std::vector<Eigen::Isometry3d> likely_places(const SurfelCloud& scan, std::span<const SurfelMap* const> maps, const Eigen::Isometry3d& centre, double radius_m, std::size_t most) {
+std::vector<Eigen::Isometry3d> likely_places(const SurfelCloud& scan, std::span<const SurfelMap* const> maps, const SurfelMap& ground, const Eigen::Isometry3d& centre, double radius_m, std::size_t most) {
   constexpr std::size_t top = WallImage::num_levels - 1;
   constexpr int block = 1 << top;
   const LevelScan level_scan(scan, centre.linear());
-  const WallImage image(maps, centre.translation().head<2>(), radius_m + range_m + 2 * block * cell_m);
+  const WallImage image(maps, ground, centre.translation().head<2>(), radius_m + range_m + 2 * block * cell_m);
   if (level_scan.walls.empty() || !image.has_walls()) return {};
 
   const int num_turns = static_cast<int>(std::round(2 * std::numbers::pi / step_rad)), reach = static_cast<int>(std::ceil(radius_m / cell_m));
@@ -216,8 +230,8 @@ std::vector<Eigen::Isometry3d> likely_places(const SurfelCloud& scan, std::span<
     Eigen::Isometry3d T = centre;
     T.linear() = Eigen::AngleAxisd(yaw(place.turn), Eigen::Vector3d::UnitZ()) * centre.linear();
     T.translation().head<2>() += cell_m * Eigen::Vector2d(place.x, place.y);
-    const auto ground = image.ground(T.translation().head<2>());
-    if (ground && level_scan.height_m) T.translation().z() = *ground + *level_scan.height_m;
+    const auto street_z = image.ground(T.translation().head<2>());
+    if (street_z && level_scan.height_m) T.translation().z() = *street_z + *level_scan.height_m;
     places.push_back(T);
   }
   return places;

@@ -29,19 +29,32 @@ SurfelCloud scan_at(const street::World& world, const Eigen::Isometry3d& T) {
 /// The place first named is the right one, near enough to be registered from; also uphill, where the centre of the search lies some metres lower.
 TEST(LikelyPlaces, OfAHillAreRightWherever) {
   const street::World world = hill();
-  SurfelMap walls, ground;
-  PointCloud points = street::sample(world, 0.5, 0.1f);
-  walls.insert(points);
-  const std::array maps = {&walls, &ground};
+  SurfelMap map;
+  map.insert(street::sample(world, 0.5, 0.1f));
+  const std::array<const SurfelMap*, 1> maps = {&map};
   for (const auto& [x, yaw] : {std::pair{60.0, 2.0}, {-55.0, -1.3}, {3.0, 3.1}}) {
     Eigen::Isometry3d truth = street::pose(x, 1, 0.1 * x + 1.7, yaw);
-    const auto places = likely_places(scan_at(world, truth), maps, street::pose(0, 0, 1.7, 0.4), 70, 10);
+    const auto places = likely_places(scan_at(world, truth), maps, map, street::pose(0, 0, 1.7, 0.4), 70, 10);
     ASSERT_FALSE(places.empty());
     EXPECT_LT((places.front().translation() - truth.translation()).head<2>().norm(), 1.5) << x;
     EXPECT_NEAR(places.front().translation().z(), truth.translation().z(), 1) << x;
     EXPECT_LT(street::angle(places.front(), truth), 0.04) << x;
     EXPECT_LE(places.size(), 10u);
   }
+}
+
+/// A prior of buildings alone: their roofs are level, and no ground.
+TEST(LikelyPlaces, LieOnNoRoofWhereGroundIsNotKnown) {
+  const street::World world = hill();
+  SurfelMap buildings;
+  street::World without_ground = world;
+  without_ground.faces.erase(without_ground.faces.begin());
+  buildings.insert(street::sample(without_ground, 0.5, 0.1f));
+  const std::array<const SurfelMap*, 1> maps = {&buildings};
+  const Eigen::Isometry3d truth = street::pose(3, 1, 2.0, 2.0);
+  const auto places = likely_places(scan_at(world, truth), maps, SurfelMap(), street::pose(0, 0, 1.7, 0.4), 20, 10);
+  ASSERT_FALSE(places.empty());
+  EXPECT_LT((places.front().translation() - truth.translation()).norm(), 1.5);
 }
 
 TEST(LikelyPlaces, AreNoneWithoutWalls) {
@@ -51,8 +64,8 @@ TEST(LikelyPlaces, AreNoneWithoutWalls) {
   map.insert(street::sample(plain, 0.5, 0.1f));
   const std::array<const SurfelMap*, 1> maps = {&map};
   const auto T = street::pose(0, 0, 1.7, 0);
-  EXPECT_TRUE(likely_places(scan_at(plain, T), maps, T, 20, 10).empty());
-  EXPECT_TRUE(likely_places(scan_at(hill(), T), maps, T, 20, 10).empty());
+  EXPECT_TRUE(likely_places(scan_at(plain, T), maps, map, T, 20, 10).empty());
+  EXPECT_TRUE(likely_places(scan_at(hill(), T), maps, map, T, 20, 10).empty());
 }
 
 }  // namespace

@@ -79,15 +79,20 @@ std::vector<Shot> splice(const Stretch& drive, const Stretch& elsewhere, const K
   return shots;
 }
 
-/// Poses of the scans as they come, at stamps that go on through a splice.
-DrivePath recorded_path(const std::vector<Shot>& shots, const Stretch& elsewhere, double period_s, bool drives_on) {
+/// Poses of the scans as they come, at stamps that go on through a splice: those of the scans that others took the place of, or a period apart.
+DrivePath recorded_path(const std::vector<Shot>& shots, const Stretch& drive, const Stretch& elsewhere, double period_s, bool drives_on) {
   DrivePath recorded;
+  if (drives_on) {
+    recorded.stamps_s = drive.path.stamps_s;
+    for (const Shot& shot : shots) recorded.poses.push_back(shot.stretch->path.poses[shot.index]);
+    return recorded;
+  }
   double away_s = 0;
   for (const Shot& shot : shots) {
     const bool is_elsewhere = shot.stretch == &elsewhere;
     recorded.stamps_s.push_back(is_elsewhere ? recorded.stamps_s.back() + period_s : shot.stretch->path.stamps_s[shot.index] + away_s);
     recorded.poses.push_back(shot.stretch->path.poses[shot.index]);
-    if (is_elsewhere && !drives_on) away_s += period_s;
+    if (is_elsewhere) away_s += period_s;
   }
   return recorded;
 }
@@ -249,7 +254,7 @@ DriveSummary simulate_drive(const DriveOptions& options, const fs::path& output,
   };
   const Stretch drive = drive_stretch(plan.track), elsewhere = drive_stretch(plan.elsewhere);
   const std::vector<Shot> shots = splice(drive, elsewhere, options.kidnap);
-  const DrivePath path = recorded_path(shots, elsewhere, 1 / scan_rate_hz(options), options.kidnap.drives_on);
+  const DrivePath path = recorded_path(shots, drive, elsewhere, 1 / scan_rate_hz(options), options.kidnap.drives_on);
   // The town's frame lies under the first wheel track; the frame `map` of the outputs at the first sensor pose, some centimetres off when it tilts.
   const MapFrame map = MapFrame::at(plan.frame.projected(), plan.frame.to_projected(path.poses.front().translation()));
   events.inform(format("%zu buildings, %zu trees, %zu parked cars along %.0f m of drive", town.buildings.size(), town.trees.size(),

@@ -111,6 +111,8 @@ std::optional<Eigen::Vector2d> kidnapped_at(const DriveOptions& options, const s
   const auto at = static_cast<std::size_t>(options.kidnap.at_scan);
   if (at >= track.size())
     throw UsageError("--kidnap-at " + std::to_string(at) + " lies beyond the drive's " + std::to_string(track.size()) + " scans");
+  if (options.kidnap.drives_on && at + static_cast<std::size_t>(options.kidnap.num_scans) > track.size())
+    throw UsageError("--kidnap-drives-on: " + std::to_string(options.kidnap.num_scans) + " scans from " + std::to_string(at) + " on are more than the drive's " + std::to_string(track.size()));
   return track[at].position;
 }
 
