@@ -113,6 +113,24 @@ void turn_shared_faces(std::vector<ModelFace>& faces, const std::vector<bool>& s
   }
 }
 
+/// Some solids leave out faces that their part states beside them, such as windows: what closes the one open solid of a part belongs to it.
+void close_solids(std::vector<ModelFace>& faces) {
+  std::map<SolidKey, Solid> solids = solids_of(faces);
+  std::map<int, std::vector<SolidKey>> open_of_part;
+  for (const auto& [key, solid] : solids)
+    if (key.solid != 0 && !solid.is_closed()) open_of_part[key.part].push_back(key);
+  for (const auto& [part, open] : open_of_part) {
+    const SolidKey beside{part, 0};
+    if (open.size() != 1 || !solids.contains(beside)) continue;
+    Solid both = solids[open.front()];
+    both.twice_vector_area += solids[beside].twice_vector_area;
+    both.twice_area += solids[beside].twice_area;
+    if (!both.is_closed()) continue;
+    for (ModelFace& face : faces)
+      if (face.solid == beside) face.solid = open.front();
+  }
+}
+
 void turn_solids_outward(std::vector<ModelFace>& faces, const std::string& feature, Diagnostics& diagnostics) {
   for (const auto& [key, solid] : solids_of(faces)) {
     if (!solid.looks_inward()) continue;
@@ -166,6 +184,7 @@ std::vector<ModelFace> model_faces(const BuildingModel& model, Diagnostics& diag
   }
   if (model.kind != ModelKind::terrain) {
     turn_shared_faces(faces, shared);
+    close_solids(faces);
     turn_solids_outward(faces, model.id, diagnostics);
   }
   for (ModelFace& face : faces) name_and_turn(face, model, face.repeated ? counted_already : diagnostics);

@@ -166,27 +166,36 @@ ModelGroups find_groups(const std::vector<HashedFile>& files, const PriorOptions
   return groups;
 }
 
-/// The first building decides on the CRS, unless it, or another, turns out to lie far from the rest: then the rest decides, in one more pass.
-/// @param warnings  live as long as the survey
-std::unique_ptr<Survey> survey_of(const std::vector<HashedFile>& files, const PriorOptions& prior_options, const ModelOptions& model_options, HeldWarnings& warnings, const Events& events) {
-  auto survey = std::make_unique<Survey>(prior_options, model_options, warnings.held());
-  std::optional<ModelGroups> groups;
+/// Nothing where no model lies far from the rest.
+std::optional<ModelGroups> groups_with_strays(Survey& survey, const std::vector<HashedFile>& files, const PriorOptions& prior_options, const ModelOptions& model_options) {
   try {
-    for (const HashedFile& file : files) survey->read(file);
-    groups.emplace(survey->take_groups());
-    if (!groups->finish()) groups.reset();
+    for (const HashedFile& file : files) survey.read(file);
+    ModelGroups groups = survey.take_groups();
+    return groups.finish() ? std::optional(std::move(groups)) : std::nullopt;
   } catch (const CrsError&) {
-    groups.emplace(find_groups(files, prior_options, model_options));
-    if (!groups->finish()) throw;
+    ModelGroups groups = find_groups(files, prior_options, model_options);
+    if (!groups.finish()) throw;
+    return groups;
   }
-  if (groups) {
-    survey = std::make_unique<Survey>(prior_options, model_options, std::move(*groups), events);
-    for (const HashedFile& file : files) survey->read(file);
-  } else {
+}
+
+/// The first building decides on the CRS, unless it, or another, turns out to lie far from the rest: then the rest decides, in one more pass.
+/// @param warnings  live as long as the survey; released unless the first building was no guide. Where this fails they may say why
+std::unique_ptr<Survey> survey_of(const std::vector<HashedFile>& files, const PriorOptions& prior_options, const ModelOptions& model_options, HeldWarnings& warnings, const Events& events) {
+  try {
+    auto survey = std::make_unique<Survey>(prior_options, model_options, warnings.held());
+    if (auto groups = groups_with_strays(*survey, files, prior_options, model_options)) {
+      survey = std::make_unique<Survey>(prior_options, model_options, std::move(*groups), events);
+      for (const HashedFile& file : files) survey->read(file);
+    } else {
+      warnings.release();
+    }
+    survey->finish();
+    return survey;
+  } catch (...) {
     warnings.release();
+    throw;
   }
-  survey->finish();
-  return survey;
 }
 
 /// One thread's way from a building in the prior's CRS to its points.

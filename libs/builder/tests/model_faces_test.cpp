@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "face_index.hpp"
 
@@ -47,6 +48,18 @@ BuildingModel two_boxes(bool turns) {
   wall.shared = model.polygons[east].shared = true;
   model.polygons[number_of_faces + west] = wall;
   return model;
+}
+
+/// As where the window in a wall stands beside the solid that has the wall with its hole: the hall is closed all the same, and what stands inside it is hidden.
+TEST(ModelFaces, AFaceStatedBesideTheSolidThatItClosesBelongsToIt) {
+  BuildingModel model = model_of(box({0, 0, 0}, {10, 10, 5}, 1), {});
+  model.polygons[east].solid = 0;
+  Diagnostics diagnostics;
+  const std::vector<ModelFace> faces = model_faces(model, diagnostics);
+  EXPECT_EQ(closed_solids(faces), (std::set<SolidKey>{{0, 1}}));
+  EXPECT_EQ(faces[east].solid, faces[west].solid);
+  model.polygons.erase(model.polygons.begin() + 1);   // without a top it is open with that face, too
+  EXPECT_TRUE(closed_solids(model_faces(model, diagnostics)).empty());
 }
 
 TEST(ModelFaces, AWallThatTwoSolidsShareLooksOutOfEach) {

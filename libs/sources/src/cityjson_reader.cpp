@@ -108,8 +108,8 @@ void read_header(Document& document, const std::string& key, const json& value) 
 class GeometryReader {
  public:
   /// @param num_placed  vertices that templates have put into the building
-  GeometryReader(const Document& document, int object, bool terrain, GeometryItems& items, ReferencedVertices& referenced, std::size_t& num_placed)
-      : document_(document), items_(items), referenced_(referenced), num_placed_(num_placed) {
+  GeometryReader(const Document& document, const BuildingModelOptions& options, int object, bool terrain, GeometryItems& items, ReferencedVertices& referenced, std::size_t& num_placed)
+      : document_(document), options_(options), items_(items), referenced_(referenced), num_placed_(num_placed) {
     context_.object = object;
     if (terrain) context_.surface_class = SurfaceClass::terrain;
   }
@@ -134,6 +134,7 @@ class GeometryReader {
                      : type == "Solid" ? 2 : type == "MultiSolid" || type == "CompositeSolid" ? 3 : 0;
     if (levels == 0) return;   // points and lines
     context_.lod = context_.surface_class == SurfaceClass::terrain ? 10 : lod_of(geometry);
+    if (!is_level_wanted(context_.lod, options_)) return;
     const json semantics = geometry.value("semantics", json::object());
     const json surfaces = semantics.is_object() ? semantics.value("surfaces", json::array()) : json::array();
     const json values = semantics.is_object() ? semantics.value("values", json()) : json();
@@ -212,6 +213,7 @@ class GeometryReader {
   }
 
   const Document& document_;
+  const BuildingModelOptions& options_;
   GeometryItems& items_;
   ReferencedVertices& referenced_;
   std::size_t& num_placed_;
@@ -245,7 +247,7 @@ class Buildings {
     const std::string building = root(id);
     Members& members = members_[building];
     const int number = id == building ? 0 : ++members.num_parts;
-    GeometryReader(document_, number, kind == ModelKind::terrain, members.items, referenced_, members.num_placed).read(object.value("geometry", json::array()));
+    GeometryReader(document_, options_, number, kind == ModelKind::terrain, members.items, referenced_, members.num_placed).read(object.value("geometry", json::array()));
     if (++members.seen < members.expected) return;
     emit(building, *kind, std::move(members.items));
     if (kind == ModelKind::vegetation) referenced_.give_back(members.num_placed);   // the others are kept: they hide each other

@@ -100,6 +100,12 @@ class Resolver {
   std::size_t steps_ = 0;
 };
 
+std::size_t num_vertices_of(const Polygon3& polygon) {
+  std::size_t count = 0;
+  for_each_ring(polygon, [&](const Ring3& ring) { count += ring.size(); });
+  return count;
+}
+
 /// How a solid refers to a polygon that is stated elsewhere in its part.
 struct SolidSide {
   bool as_stated = false, turned = false;
@@ -117,7 +123,7 @@ struct SaidOfPolygon {
 /// of a boundary surface, or of another solid, has it as a face and says which way it looks.
 class References {
  public:
-  References(GeometryItems& geometry, const GeometryItems& shared, ReferencedVertices& vertices) : geometry_(geometry), shared_(shared), vertices_(vertices) {}
+  References(GeometryItems& geometry, const GeometryItems& shared, const BuildingModelOptions& options, ReferencedVertices& vertices) : geometry_(geometry), shared_(shared), options_(options), vertices_(vertices) {}
 
   std::vector<GeometryItem> resolve() {
     Resolver resolver(geometry_, shared_);
@@ -136,11 +142,12 @@ class References {
     return std::move(resolved_);
   }
   std::size_t unresolved() const { return unresolved_; }
-  std::size_t num_vertices() const { return num_vertices_; }
+  std::size_t num_placed() const { return num_placed_; }
 
  private:
   void follow(const GeometryItem& reference, const GeometryItems& home, std::size_t index, bool flip) {
     const GeometryContext& context = reference.context;
+    if (!is_level_wanted(context.lod, options_)) return;
     const GeometryItem& target = home.items[index];
     if (&home == &geometry_ && target.context.lod == context.lod && target.context.object == context.object) {
       if (context.thematic && !target.context.thematic && !said_[index].surface_class) said_[index].surface_class = context.surface_class;
@@ -184,7 +191,8 @@ class References {
   /// False where the model has too many.
   bool count(const GeometryItem& item, bool placed) {
     const Polygon3& polygon = item.polygon.polygon;
-    placed ? vertices_.add_placed(polygon, num_vertices_) : vertices_.add(polygon, num_vertices_);
+    if (placed) vertices_.add_placed(polygon, num_placed_);
+    num_vertices_ += num_vertices_of(polygon);
     if (num_vertices_ <= ReferencedVertices::most_of_model) return true;
     ++unresolved_;
     return false;
@@ -192,8 +200,9 @@ class References {
 
   GeometryItems& geometry_;
   const GeometryItems& shared_;
+  const BuildingModelOptions& options_;
   ReferencedVertices& vertices_;
-  std::size_t num_vertices_ = 0, unresolved_ = 0;
+  std::size_t num_placed_ = 0, num_vertices_ = 0, unresolved_ = 0;
   std::set<std::tuple<const GeometryItem*, int, int, int>> brought_in_;   // polygon, level, part, solid; templates may come many times
   std::unordered_map<std::size_t, SaidOfPolygon> said_;
   std::vector<GeometryItem> resolved_;
@@ -204,7 +213,7 @@ std::map<int, int> choose_lods(const std::vector<GeometryItem>& items, const Bui
   std::map<int, int> highest;
   for (const GeometryItem& item : items) {
     const GeometryContext& context = item.context;
-    if (context.lod < 10 || (options.lod && context.lod / 10 != *options.lod)) continue;
+    if (context.lod < 10 || !is_level_wanted(context.lod, options)) continue;
     int& lod = highest.try_emplace(context.object, 0).first->second;
     lod = std::max(lod, context.lod);
   }
@@ -232,21 +241,14 @@ std::vector<std::string> missing_references(const GeometryItems& geometry) {
   return missing;
 }
 
-void ReferencedVertices::add(const Polygon3& polygon, std::size_t& of_model) {
-  std::size_t count = 0;
-  for_each_ring(polygon, [&](const Ring3& ring) { count += ring.size(); });
-  of_model += count;
-  if ((of_file_ += count) > most_of_file)
-    throw FormatError(file_, "its references (xlinks, implicit geometry, templates) multiply to more than 32 million vertices; write it in several files, or take a lower level with --lod");
-}
-
 void ReferencedVertices::add_placed(const Polygon3& polygon, std::size_t& of_model) {
-  add(polygon, of_model);
-  if (of_model > most_of_model) throw FormatError(file_, "the templates that one building places come to more than 8 million vertices; take a lower level with --lod");
+  const std::size_t count = num_vertices_of(polygon);
+  if ((of_file_ += count) > most_of_file) throw FormatError(file_, "the templates that it places come to more than 32 million vertices; write it in several files, or take a lower level with --lod");
+  if ((of_model += count) > most_of_model) throw FormatError(file_, "the templates that one building places come to more than 8 million vertices; take a lower level with --lod");
 }
 
 std::size_t assemble(GeometryItems geometry, const GeometryItems& shared, const BuildingModelOptions& options, ReferencedVertices& referenced, BuildingModel& model) {
-  References references(geometry, shared, referenced);
+  References references(geometry, shared, options, referenced);
   std::vector<GeometryItem> items = references.resolve();
   model.unresolved_references += references.unresolved();
   const std::map<int, int> lods = choose_lods(items, options);
@@ -273,7 +275,7 @@ std::size_t assemble(GeometryItems geometry, const GeometryItems& shared, const 
     model.polygons.push_back(std::move(item.polygon));
     is_named.push_back(context.thematic);
   }
-  return references.num_vertices();
+  return references.num_placed();
 }
 
 std::optional<SurfaceClass> surface_class_of(std::string_view name) {

@@ -41,9 +41,8 @@ struct GeometryItems {
 class ReferencedVertices {
  public:
   explicit ReferencedVertices(std::filesystem::path file) : file_(std::move(file)) {}
-  /// @param of_model  so far; the polygon's are added  @throws FormatError where those of the file are too many
-  void add(const Polygon3& polygon, std::size_t& of_model);
-  /// Of templates, which cannot be left out one by one. @throws FormatError where those of the model are too many, too
+  /// Of templates, which a few lines place again and again, and which cannot be left out one by one. @param of_model  so far; the polygon's are added
+  /// @throws FormatError where those of the model or of the file are too many
   void add_placed(const Polygon3& polygon, std::size_t& of_model);
   /// Of a model that nobody keeps once it has been read.
   void give_back(std::size_t of_model) { of_file_ -= of_model; }
@@ -54,6 +53,9 @@ class ReferencedVertices {
   std::filesystem::path file_;
   std::size_t of_file_ = 0;
 };
+
+/// Whether options ask for this level, in tenths.
+inline bool is_level_wanted(int lod, const BuildingModelOptions& options) { return !options.lod || lod / 10 == *options.lod; }
 
 /// A mirrored polygon goes the other way round, so that it looks outward still.
 void place(Polygon3& polygon, const Eigen::Affine3d& T_model_template);

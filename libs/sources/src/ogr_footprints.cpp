@@ -1,6 +1,7 @@
 #include <priormap/sources/ogr_footprints.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 
@@ -78,32 +79,48 @@ void add_polygons(const OGRGeometry& geometry, std::vector<const OGRPolygon*>& p
   }
 }
 
-/// What all polygons cover together, where the inside of one meets that of another; null where none does, or the polygons are not in order by themselves.
-std::unique_ptr<OGRGeometry> united_if_overlapping(const std::vector<const OGRPolygon*>& polygons) {
-  if (polygons.size() < 2) return nullptr;
-  OGRMultiPolygon all;
-  for (const OGRPolygon* polygon : polygons) all.addGeometry(polygon);
+/// What all polygons cover together, where the inside of one meets that of another; null where none does.
+std::unique_ptr<OGRGeometry> united_if_overlapping(const OGRMultiPolygon& polygons) {
   std::unique_ptr<OGRGeometry> united;
-  if (!all.IsValid() && std::ranges::all_of(polygons, [](const OGRPolygon* polygon) { return polygon->IsValid(); })) united.reset(all.UnionCascaded());
-  CPLErrorReset();   // GEOS says what is not valid
-  const double stated = all.get_Area();
+  if (polygons.getNumGeometries() > 1 && !polygons.IsValid()) united.reset(polygons.UnionCascaded());
+  const double stated = polygons.get_Area();
   const auto covered = [](const OGRGeometry& geometry) { return wkbFlatten(geometry.getGeometryType()) == wkbPolygon ? geometry.toPolygon()->get_Area() : geometry.toMultiPolygon()->get_Area(); };
   const bool is_areal = united && (wkbFlatten(united->getGeometryType()) == wkbPolygon || wkbFlatten(united->getGeometryType()) == wkbMultiPolygon);
   const bool overlaps = is_areal && covered(*united) < stated * (1 - 1e-9);   // else they share edges, which vanish
   return overlaps ? std::move(united) : nullptr;
 }
 
-/// By the even-odd rule: of polygons that overlap, which no multipolygon may have, the rings of their union.
+/// As a wall is from above.
+bool is_a_line(const OGRLinearRing* ring) {
+  constexpr double widest = 1e-6;   // of its length
+  if (!ring || ring->getNumPoints() == 0) return false;
+  const auto from_first = [&](int i) { return Eigen::Vector2d(ring->getX(i) - ring->getX(0), ring->getY(i) - ring->getY(0)); };
+  Eigen::Vector2d farthest = Eigen::Vector2d::Zero();
+  for (int i = 0; i < ring->getNumPoints(); ++i)
+    if (from_first(i).squaredNorm() > farthest.squaredNorm()) farthest = from_first(i);
+  for (int i = 0; i < ring->getNumPoints(); ++i) {
+    const Eigen::Vector2d p = from_first(i);
+    if (std::abs(farthest.x() * p.y() - farthest.y() * p.x()) > widest * farthest.squaredNorm()) return false;
+  }
+  return true;
+}
+
+/// By the even-odd rule: of polygons that overlap, which no multipolygon may have, the rings of their union. Upright ones, of buildings in three dimensions, cover nothing.
 std::vector<Ring2> rings_of(const OGRGeometry& geometry, bool swap_axes, const std::string& id, Diagnostics& diagnostics) {
   std::vector<const OGRPolygon*> polygons;
   add_polygons(geometry, polygons);
-  const std::unique_ptr<OGRGeometry> united = united_if_overlapping(polygons);
-  if (united) {
-    diagnostics.add(DiagnosticCode::intersection_rings, id, "its polygons overlap or lie within each other; united");
-    polygons.clear();
-    add_polygons(*united, polygons);
-  }
   std::vector<Ring2> rings;
+  OGRMultiPolygon in_order;
+  for (const OGRPolygon* polygon : polygons) {
+    if (polygons.size() > 1 && is_a_line(polygon->getExteriorRing())) continue;
+    if (polygons.size() > 1 && polygon->IsValid()) in_order.addGeometry(polygon);
+    else add_rings(*polygon, swap_axes, rings);
+  }
+  const std::unique_ptr<OGRGeometry> united = united_if_overlapping(in_order);
+  CPLErrorReset();   // GEOS says what is not valid
+  if (united) diagnostics.add(DiagnosticCode::intersection_rings, id, "its polygons overlap or lie within each other; united");
+  polygons.clear();
+  add_polygons(united ? *united : static_cast<const OGRGeometry&>(in_order), polygons);
   for (const OGRPolygon* polygon : polygons) add_rings(*polygon, swap_axes, rings);
   return rings;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -73,12 +74,26 @@ void copy_as_utf8(const fs::path& file, const SingleByteTable& table, int descri
   }
 }
 
-/// libosmium takes whatever follows a stream of bzip2 for another one. Only a file that ends in a zero byte is looked at, which is read as a whole for that.
+/// Whether a file's last eleven bytes are the end of a bzip2 stream: 48 bits that stand for it, 32 of a checksum, and up to 7 zeros to fill a byte.
+bool ends_bzip2_stream(const std::array<unsigned char, 11>& last) {
+  constexpr std::uint64_t end_of_stream = 0x177245385090, bits_48 = 0xffffffffffff;
+  std::uint64_t before_checksum = 0;   // and as many bits again as the filling has
+  for (std::size_t i = 0; i < 7; ++i) before_checksum = before_checksum << 8 | last[i];
+  for (unsigned filling = 0; filling < 8; ++filling)
+    if ((before_checksum >> filling & bits_48) == end_of_stream && (last.back() & ((1u << filling) - 1)) == 0) return true;
+  return false;
+}
+
+/// libosmium takes whatever follows a stream of bzip2 for another one. Only a file that ends in zeros beyond its last stream is read as a whole.
 std::optional<std::uintmax_t> end_before_padding(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::array<char, 2> start{};
-  char last = 1;
-  if (!stream.read(start.data(), start.size()) || start != std::array{'B', 'Z'} || !stream.seekg(-1, std::ios::end).get(last) || last != 0) return std::nullopt;
+  std::array<char, 11> end{};
+  if (!stream.read(start.data(), start.size()) || start != std::array{'B', 'Z'}) return std::nullopt;
+  if (!stream.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end).read(end.data(), end.size()) || end.back() != 0) return std::nullopt;
+  std::array<unsigned char, 11> bytes_at_end{};
+  std::ranges::transform(end, bytes_at_end.begin(), [](char c) { return static_cast<unsigned char>(c); });
+  if (ends_bzip2_stream(bytes_at_end)) return std::nullopt;
   ByteSource bytes(file);
   std::vector<char> chunk(std::size_t(1) << 18);
   while (bytes.read(chunk) == chunk.size()) {}

@@ -250,6 +250,7 @@ TEST(CityGml, TemplatesPlacedBeyondWhatABuildingMayHoldAreRefused) {
            "</core:ImplicitGeometry></bldg:lod3ImplicitRepresentation></bldg:BuildingInstallation></bldg:outerBuildingInstallation>";
   };
   const std::string stated = building(placed("<core:relativeGMLGeometry><gml:MultiSurface gml:id='shape'>" + member(huge) + "</gml:MultiSurface></core:relativeGMLGeometry>"), "a");
+  BuildingModelOptions options;
   const auto message = [&](int buildings, int placements) -> std::string {
     std::string text = stated;
     for (int b = 0; b < buildings; ++b) {
@@ -259,7 +260,7 @@ TEST(CityGml, TemplatesPlacedBeyondWhatABuildingMayHoldAreRefused) {
     }
     const TemporaryFile file(".gml", document(text));
     try {
-      read_citygml(file.path(), {}, [](BuildingModel&&) {});
+      read_citygml(file.path(), options, [](BuildingModel&&) {});
       return "";
     } catch (const FormatError& error) {
       return error.what();
@@ -268,6 +269,9 @@ TEST(CityGml, TemplatesPlacedBeyondWhatABuildingMayHoldAreRefused) {
   EXPECT_EQ(message(2, 150), "");
   EXPECT_NE(message(1, 250).find("more than 8 million vertices"), std::string::npos);
   EXPECT_NE(message(6, 150).find("more than 32 million vertices"), std::string::npos);
+  options.lod = 2;   // as the messages say
+  EXPECT_EQ(message(1, 250), "");
+  EXPECT_EQ(message(6, 150), "");
 }
 
 TEST(CityGml, HolesOldGmlSyntaxAndInnermostSrsNameAreRead) {

@@ -138,6 +138,9 @@ TEST(CityJson, TemplatesPlacedBeyondWhatABuildingMayHoldAreRefused) {
   } catch (const FormatError& error) {
     EXPECT_NE(std::string(error.what()).find("more than 8 million vertices"), std::string::npos) << error.what();
   }
+  BuildingModelOptions coarser;   // as the message says
+  coarser.lod = 2;
+  EXPECT_EQ(read(text, coarser).size(), 1u);
 }
 
 TEST(CityJson, ASequenceGivesEachFeatureItsOwnVertices) {

@@ -92,10 +92,13 @@ TEST_F(OgrFootprints, APolygonWithinAnotherOfAMultipolygonIsNoCourtyard) {
   EXPECT_NEAR(area_of(with_yard + ",[" + ring(0.004, 0.006) + "]"), 100 - 36 + 4, 1e-6) << "an island in the yard";
   EXPECT_NEAR(area_of(with_yard + ",[" + ring(0.004, 0.006) + "],[" + ring(0.0045, 0.0055) + "]"), 100 - 36 + 4, 1e-6) << "a polygon within the island";
   EXPECT_NEAR(area_of(block + ",[" + ring(0.005, 0.015) + "]"), 100 + 100 - 25, 1e-6) << "polygons that overlap";
+  const std::string upright = "[[[11,11,0],[11,11.01,0],[11,11.01,5],[11,11,5],[11,11,0]]]", bow_tie = "[[[11.05,11],[11.06,11.01],[11.06,11],[11.05,11.01],[11.05,11]]]";
+  EXPECT_NEAR(area_of(block + ",[" + ring(0.005, 0.015) + "]," + upright), 100 + 100 - 25, 1e-6) << "a wall beside them covers nothing";
+  EXPECT_NEAR(area_of(block + ",[" + ring(0.005, 0.015) + "]," + bow_tie), 100 + 100 - 25 + 50, 1e-6) << "one that is not in order stands for itself";
   EXPECT_NEAR(area_of(block + "," + block), 100, 1e-6) << "twice the same";
-  EXPECT_EQ(diagnostics_.counts().at(DiagnosticCode::intersection_rings), 4u);
+  EXPECT_EQ(diagnostics_.counts().at(DiagnosticCode::intersection_rings), 6u);
   EXPECT_NEAR(area_of(block + ",[" + ring(0.010, 0.012) + "]"), 100 + 4, 1e-6) << "polygons that touch in a corner";
-  EXPECT_EQ(diagnostics_.counts().at(DiagnosticCode::intersection_rings), 4u);
+  EXPECT_EQ(diagnostics_.counts().at(DiagnosticCode::intersection_rings), 6u);
 }
 
 /// As most offices hand them out.
