@@ -18,6 +18,7 @@ namespace {
 
 // Scores a surfel.
 constexpr double clear_gain = 0.02, least_score = 0.01;
+constexpr double least_of_a_start = -0.01, least_of_any_start = -0.025;   // right ones had -0.0093 and more after some keyframes, wrong ones -0.02 to -0.06
 
 double translation_information(const Matrix6d& information) { return information.bottomRightCorner<3, 3>().trace(); }
 
@@ -124,8 +125,10 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
   } else if (num_heard_ % enough == 0 && num_heard_ + enough <= options_.start_keyframes && !lost_once_ && !started_elsewhere_ && score < least_score) {
     look_farther(scan, T_odom_sensor, map);
   }
+  const bool is_through = num_heard_ >= options_.start_keyframes;
+  start_in_doubt_ = !lost_once_ && score < (is_through ? least_of_any_start : least_of_a_start);
   const bool in_vain = num_heard_ >= enough && !located_ && !fits;
-  if (num_heard_ < options_.start_keyframes && !in_vain) return;
+  if (!is_through && !in_vain) return;
   hypotheses_ = {};
   farther_ = {};
   if (located_) {
@@ -163,6 +166,7 @@ void PriorTracker::begin_anew(const LostPlace& lost) {
   T_map_odom_lost_ = T_map_odom_;
   lost_ = lost;
   lost_once_ = true;
+  start_in_doubt_ = false;
   lost_step_m_ = std::min(step_m, options_.search_step_m);
   look_anew();
 }
@@ -178,7 +182,7 @@ void PriorTracker::look_anew() {
 
 void PriorTracker::exchange(StateArchive& archive) {
   if (prior_) archive(*prior_);
-  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_.places, hypotheses_.num_surfels, farther_.places, farther_.num_surfels, T_map_odom_lost_, lost_, lost_step_m_, lost_once_, located_, started_elsewhere_, usual_score_, num_heard_);
+  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_.places, hypotheses_.num_surfels, farther_.places, farther_.num_surfels, T_map_odom_lost_, lost_, lost_step_m_, lost_once_, start_in_doubt_, located_, started_elsewhere_, usual_score_, num_heard_);
 }
 
 void PriorTracker::go_on(const Eigen::Isometry3d& T_odom_sensor) {
