@@ -103,7 +103,7 @@ class JointMethod : public MappingMethod {
 
   Verdict verdict_by_prior() const {
     if (!last_match_ || last_match_->share < outside_share) return Verdict::outside_prior;
-    if (!last_match_->figures.accepted || !tracker_.is_located()) return Verdict::dead_reckoned;
+    if (!last_match_->figures.accepted || !tracker_.is_found()) return Verdict::dead_reckoned;   // a start in doubt is judged at the end
     return Verdict::anchored;
   }
 

@@ -34,7 +34,9 @@ class PriorTracker {
   std::optional<PriorMatch> follow(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor);
   /// The odometry has a gap: the next scans are looked for, in any direction and turned anyhow, until they fit clearly. @param lost  around there, and as far again as the way since
   void begin_anew(const LostPlace& lost);
-  /// Whether the drive has been found, since the odometry began anew. At first it is where the user says, unless the scans contradict.
+  /// Whether the drive has been found, since the odometry began anew. At first it is where the user says,
+  bool is_found() const { return located_; }
+  /// unless the scans contradict; they may be the first ones alone.
   bool is_located() const { return located_ && !start_in_doubt_; }
   /// Whether the drive has been found far from where the user says that it starts: poses before this one are to be known from here.
   bool started_elsewhere() const { return started_elsewhere_; }

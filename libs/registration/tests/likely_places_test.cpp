@@ -51,7 +51,7 @@ TEST(LikelyPlaces, LieOnNoRoofWhereGroundIsNotKnown) {
   without_ground.faces.erase(without_ground.faces.begin());
   buildings.insert(street::sample(without_ground, 0.5, 0.1f));
   const std::array<const SurfelMap*, 1> maps = {&buildings};
-  const Eigen::Isometry3d truth = street::pose(3, 1, 2.0, 2.0);
+  const Eigen::Isometry3d truth = street::pose(0, -3.2, 1.7, 2.0);   // two metres from a house
   const auto places = likely_places(scan_at(world, truth), maps, SurfelMap(), street::pose(0, 0, 1.7, 0.4), 20, 10);
   ASSERT_FALSE(places.empty());
   EXPECT_LT((places.front().translation() - truth.translation()).norm(), 1.5);
