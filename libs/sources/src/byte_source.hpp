@@ -1,8 +1,7 @@
 #pragma once
-#include <cstdint>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <span>
 
 namespace priormap {
@@ -17,8 +16,6 @@ class ByteSource {
   ByteSource& operator=(const ByteSource&) = delete;
   /// Fills `buffer`; fewer bytes only at the end. @throws FormatError on a damaged stream
   std::size_t read(std::span<char> buffer);
-  /// After the end: where zero bytes begin that follow the last stream of a bzip2 file, which blocks of tapes and archives leave. Nothing where there are none.
-  std::optional<std::uintmax_t> padding_begins() const;
 
  private:
   struct Stream;

@@ -4,7 +4,6 @@
 #include <iterator>
 #include <limits>
 #include <map>
-#include <osmium/io/any_input.hpp>
 #include <osmium/osm.hpp>
 #include <osmium/thread/pool.hpp>
 #include <span>

@@ -8,9 +8,10 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <functional>
+#include <cstdio>
+#include <osmium/io/compression.hpp>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include <priormap/core/spill_file.hpp>
 
 #include "byte_source.hpp"
+#include "bzip2_stream.hpp"
 #include "xml_encoding.hpp"
 
 namespace priormap {
@@ -74,75 +76,60 @@ void copy_as_utf8(const fs::path& file, const SingleByteTable& table, int descri
   }
 }
 
-/// Whether a file's last eleven bytes are the end of a bzip2 stream: 48 bits that stand for it, 32 of a checksum, and up to 7 zeros to fill a byte.
-bool ends_bzip2_stream(const std::array<unsigned char, 11>& last) {
-  constexpr std::uint64_t end_of_stream = 0x177245385090, bits_48 = 0xffffffffffff;
-  std::uint64_t before_checksum = 0;   // and as many bits again as the filling has
-  for (std::size_t i = 0; i < 7; ++i) before_checksum = before_checksum << 8 | last[i];
-  for (unsigned filling = 0; filling < 8; ++filling)
-    if ((before_checksum >> filling & bits_48) == end_of_stream && (last.back() & ((1u << filling) - 1)) == 0) return true;
-  return false;
-}
-
-/// libosmium takes whatever follows a stream of bzip2 for another one. Only a file that ends in zeros beyond its last stream is read as a whole.
-std::optional<std::uintmax_t> end_before_padding(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::array<char, 2> start{};
-  std::array<char, 11> end{};
-  if (!stream.read(start.data(), start.size()) || start != std::array{'B', 'Z'}) return std::nullopt;
-  if (!stream.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end).read(end.data(), end.size()) || end.back() != 0) return std::nullopt;
-  std::array<unsigned char, 11> bytes_at_end{};
-  std::ranges::transform(end, bytes_at_end.begin(), [](char c) { return static_cast<unsigned char>(c); });
-  if (ends_bzip2_stream(bytes_at_end)) return std::nullopt;
-  ByteSource bytes(file);
-  std::vector<char> chunk(std::size_t(1) << 18);
-  while (bytes.read(chunk) == chunk.size()) {}
-  return bytes.padding_begins();
-}
-
-void copy_start(const fs::path& file, std::uintmax_t size, int descriptor) {
-  std::ifstream stream(file, std::ios::binary);
-  std::vector<char> chunk(std::size_t(1) << 18);
-  while (size > 0 && stream.read(chunk.data(), static_cast<std::streamsize>(std::min<std::uintmax_t>(size, chunk.size())))) {
-    write_all(descriptor, {chunk.data(), static_cast<std::size_t>(stream.gcount())});
-    size -= static_cast<std::uintmax_t>(stream.gcount());
+/// Instead of libosmium's own, which ends with the stream that ends in the last 5000 bytes of a file, and takes zero bytes after the last stream for another.
+class Bzip2Decompressor : public osmium::io::Decompressor {
+ public:
+  explicit Bzip2Decompressor(FileHandle file) : stream_(std::move(file)) {}
+  std::string read() override {
+    std::string buffer(input_buffer_size, '\0');
+    buffer.resize(stream_.read(buffer));
+    return buffer;
   }
-  if (size > 0) throw IoError(file, "cannot be read");
+  void close() override {}
+
+ private:
+  Bzip2Stream stream_;
+};
+
+void let_libosmium_read_bzip2() {
+  using osmium::io::Compressor, osmium::io::Decompressor;
+  static const bool registered = osmium::io::CompressionFactory::instance().register_compression(
+      osmium::io::file_compression::bzip2, [](int, osmium::io::fsync) -> Compressor* { throw osmium::unsupported_file_format_error("bzip2 is only read"); },
+      [](int descriptor) -> Decompressor* {
+        FileHandle file(::fdopen(descriptor, "rb"));
+        if (!file) throw std::system_error(errno, std::generic_category());
+        return new Bzip2Decompressor(std::move(file));
+      },
+      [](const char*, std::size_t) -> Decompressor* { throw osmium::unsupported_file_format_error("bzip2 is only read from files"); });
+  static_cast<void>(registered);
 }
 
 }  // namespace
 
 OsmInput::OsmInput(const fs::path& file) : path_(file) {
+  let_libosmium_read_bzip2();
   if (osmium::io::File(file.string()).format() != osmium::io::file_format::xml) return;
   const std::string encoding = foreign_xml_encoding(file);
-  if (encoding.empty()) {
-    if (const auto end = end_before_padding(file)) keep_copy("osm.bz2", [&](int copy) { copy_start(file, *end, copy); });
-    return;
-  }
+  if (encoding.empty()) return;
   const std::optional<SingleByteTable> table = single_byte_table(encoding);
   if (!table) throw FormatError(file, encoding_fault(encoding));
-  keep_copy("osm", [&](int copy) { copy_as_utf8(file, *table, copy); });
-}
-
-void OsmInput::keep_copy(const std::string& format, const std::function<void(int descriptor)>& write) {
-  copy_format_ = format;
   copy_ = nameless_file();
   try {
-    write(copy_);
+    copy_as_utf8(file, *table, copy_);
   } catch (...) {
     ::close(copy_);
     throw;
   }
 }
 
-OsmInput::OsmInput(OsmInput&& other) noexcept : path_(std::move(other.path_)), copy_(std::exchange(other.copy_, -1)), copy_format_(std::move(other.copy_format_)) {}
+OsmInput::OsmInput(OsmInput&& other) noexcept : path_(std::move(other.path_)), copy_(std::exchange(other.copy_, -1)) {}
 
 OsmInput::~OsmInput() {
   if (copy_ >= 0) ::close(copy_);
 }
 
 osmium::io::File OsmInput::file() const {
-  return copy_ < 0 ? osmium::io::File(path_.string()) : osmium::io::File("/proc/self/fd/" + std::to_string(copy_), copy_format_);
+  return copy_ < 0 ? osmium::io::File(path_.string()) : osmium::io::File("/proc/self/fd/" + std::to_string(copy_), "osm");
 }
 
 }  // namespace priormap

@@ -1,13 +1,16 @@
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <osmium/io/file.hpp>
-#include <string>
+// All that osmium/io/any_input.hpp names but bzip2, which OsmInput brings.
+#include <osmium/io/gzip_compression.hpp>
+#include <osmium/io/o5m_input.hpp>
+#include <osmium/io/opl_input.hpp>
+#include <osmium/io/pbf_input.hpp>
+#include <osmium/io/xml_input.hpp>
 
 namespace priormap {
 
-/// An OSM file as libosmium reads it: the file itself, or a nameless temporary copy: in UTF-8, where XML is declared in an encoding that
-/// its parser does not know; without padding, where zero bytes follow what bzip2 packed.
+/// An OSM file as libosmium reads it: the file itself, or a nameless temporary copy in UTF-8, where XML is declared in an encoding that its parser does not know.
 class OsmInput {
  public:
   /// @throws IoError; FormatError for an encoding that is none of one byte a character, and for what unpacks to far more than a map
@@ -20,10 +23,7 @@ class OsmInput {
 
  private:
   std::filesystem::path path_;
-  void keep_copy(const std::string& format, const std::function<void(int descriptor)>& write);
-
   int copy_ = -1;   ///< descriptor
-  std::string copy_format_;
 };
 
 }  // namespace priormap

@@ -351,6 +351,19 @@ TEST_F(OsmFootprints, DamagedCompressionIsNamed) {
   }
 }
 
+TEST_F(OsmFootprints, StreamsOfBzip2ThatFollowEachOtherAreOneText) {
+  const std::string text = osm(corners + house(1, "5"));
+  for (const std::size_t length : {std::size_t{50}, text.size() / 2, text.size()}) {
+    std::string packed;
+    for (std::size_t i = 0; i < text.size(); i += length) packed += bzip2(text.substr(i, length));
+    for (const std::string& after : {std::string(), bzip2(""), std::string(512, '\0')}) {
+      const fs::path file = write("town.osm.bz2", packed + after);
+      EXPECT_EQ(read_osm_footprints({file}, 2, diagnostics_).size(), 1u) << length << " bytes a stream, " << after.size() << " after them";
+      EXPECT_TRUE(read_osm_streets(file).empty());
+    }
+  }
+}
+
 TEST_F(OsmFootprints, ZeroBytesAfterACompressedFileArePadding) {
   const std::string packed = bzip2(osm(corners + house(1, "5")));
   for (const std::size_t padding : {std::size_t{1}, std::size_t{512}, std::size_t{1} << 20}) {
