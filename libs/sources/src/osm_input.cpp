@@ -104,10 +104,16 @@ void let_libosmium_read_bzip2() {
   static_cast<void>(registered);
 }
 
+bool holds_nothing(const fs::path& file) {
+  std::array<char, 1> first{};
+  return ByteSource(file).read(first) == 0;
+}
+
 }  // namespace
 
 OsmInput::OsmInput(const fs::path& file) : path_(file) {
   let_libosmium_read_bzip2();
+  if (holds_nothing(file)) throw FormatError(file, "is empty; fetch it again");
   if (osmium::io::File(file.string()).format() != osmium::io::file_format::xml) return;
   const std::string encoding = foreign_xml_encoding(file);
   if (encoding.empty()) return;

@@ -13,7 +13,7 @@ namespace priormap {
 /// An OSM file as libosmium reads it: the file itself, or a nameless temporary copy in UTF-8, where XML is declared in an encoding that its parser does not know.
 class OsmInput {
  public:
-  /// @throws IoError; FormatError for an encoding that is none of one byte a character, and for what unpacks to far more than a map
+  /// @throws IoError; FormatError for an empty file, for an encoding that is none of one byte a character, and for what unpacks to far more than a map
   explicit OsmInput(const std::filesystem::path& file);
   ~OsmInput();
   OsmInput(OsmInput&& other) noexcept;

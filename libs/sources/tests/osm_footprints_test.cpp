@@ -364,6 +364,18 @@ TEST_F(OsmFootprints, StreamsOfBzip2ThatFollowEachOtherAreOneText) {
   }
 }
 
+TEST_F(OsmFootprints, AnEmptyFileIsCalledEmpty) {
+  for (const fs::path& file : {write("empty.osm", ""), write("empty.osm.bz2", ""), write("nothing.osm.bz2", bzip2("")), write("empty.osm.pbf", "")})
+    for (const std::function<void()>& read : {std::function<void()>([&] { read_osm_footprints({file}, 2, diagnostics_); }), {[&] { read_osm_streets(file); }}}) {
+      try {
+        read();
+        ADD_FAILURE() << file << " was read";
+      } catch (const FormatError& error) {
+        EXPECT_EQ(error.what(), file.string() + ": is empty; fetch it again");
+      }
+    }
+}
+
 TEST_F(OsmFootprints, ZeroBytesAfterACompressedFileArePadding) {
   const std::string packed = bzip2(osm(corners + house(1, "5")));
   for (const std::size_t padding : {std::size_t{1}, std::size_t{512}, std::size_t{1} << 20}) {
