@@ -10,6 +10,8 @@
 
 #include <priormap/pointcloud/slope.hpp>
 
+#include "joints.hpp"
+
 namespace priormap {
 namespace {
 
@@ -105,7 +107,7 @@ struct FaceIndex::Candidate {
 std::vector<FaceIndex::Candidate> FaceIndex::candidates(std::uint32_t model, const ModelFace& face) const {
   const Eigen::AlignedBox3d box = box_of(face.polygon.exterior);
   std::vector<Candidate> found;
-  for (const std::uint32_t i : index_.meeting(grown({box.min().x(), box.min().y(), box.max().x(), box.max().y()}, touching_m))) {
+  for (const std::uint32_t i : index_.meeting(grown({box.min().x(), box.min().y(), box.max().x(), box.max().y()}, joint_m))) {
     const IndexedFace& other = faces_[i];
     const Solid& solid = solids_[other.solid];
     const bool same_model = solid.model == model, same_part = same_model && solid.key.part == face.solid.part, in_solids = solid.key.solid != 0 && face.solid.solid != 0;
@@ -148,7 +150,9 @@ class FaceIndex::Spot {
     if (cosine > same_direction) return candidate.repeats && std::abs(in_front_of_it) < same_place_m && is_on(candidate);
     // The back of a thin wall looks the other way too, and touches nothing.
     const double least = candidate.is_own ? -same_place_m : -touching_m;
-    return cosine < -same_direction && least < in_front_of_it && in_front_of_it < touching_m && is_on(candidate);
+    const bool is_parallel = 1 - cosine * cosine < joint_sine * joint_sine;
+    const double most = !candidate.is_own && is_parallel && is_upright() ? joint_m : touching_m;
+    return cosine < -same_direction && least < in_front_of_it && in_front_of_it < most && is_on(candidate);
   }
 
   bool is_upright() const { return is_wall(normal_.z()); }

@@ -9,8 +9,8 @@
 
 namespace priormap {
 
-/// The faces of all building models, to find the spots of a face that others hide: where another face touches it looking the other way (walls that buildings share, a
-/// roof under what stands on it), and where the space right in front lies inside another solid, be it of another building or of the same. Where solids of a building
+/// The faces of all building models, to find the spots of a face that others hide: where another face touches it looking the other way (walls that buildings share, also
+/// across a joint, a roof under what stands on it), and where the space right in front lies inside another solid, be it of another building or of the same. Where solids of a building
 /// state one spot twice, the later keeps it: parts come after the body and are drawn in more detail. A polygon that several solids state bounds each of them,
 /// and is hidden by none of its repetitions: they are not built.
 /// Const members are thread-safe after `finish`.
@@ -23,8 +23,6 @@ class FaceIndex {
   void finish() { index_.sort(); }
   /// Removes the points of a face that others hide, and their normals. @param model  as in `add`
   void remove_hidden(std::uint32_t model, const ModelFace& face, std::vector<Eigen::Vector3d>& points, std::vector<Eigen::Vector3d>& normals) const;
-
-  static constexpr double touching_m = 0.05;   ///< gaps that no beam enters
 
  private:
   struct Solid {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "joints.hpp"
+
 namespace priormap {
 namespace {
 
@@ -43,13 +45,12 @@ bool comes_inside(const Polygon2& polygon, const Eigen::Vector2d& a, const Eigen
 
 /// Whether the way from `a` into a polygon leads through a wall of it that is parallel to the one that looks along the way.
 bool enters_head_on(const Polygon2& polygon, const Eigen::Vector2d& a, const Eigen::Vector2d& inside) {
-  constexpr double sine = 0.1;   // 6 degrees
   const Eigen::Vector2d way = (inside - a).normalized();
   bool head_on = false;
   for_each_ring(polygon, [&](const Ring2& ring) {
     for_each_edge(ring, [&](const Eigen::Vector2d& p, const Eigen::Vector2d& q) {
       if (side_of(a, inside, p) == side_of(a, inside, q) || side_of(p, q, a) == side_of(p, q, inside)) return;
-      head_on |= std::abs((q - p).normalized().dot(way)) < sine;
+      head_on |= std::abs((q - p).normalized().dot(way)) < joint_sine;
     });
   });
   return head_on;

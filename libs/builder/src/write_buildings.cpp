@@ -12,6 +12,7 @@
 #include <priormap/tessellation/sample.hpp>
 
 #include "chunks.hpp"
+#include "joints.hpp"
 #include "outline_stages.hpp"
 #include "point_buffer.hpp"
 #include "visible_points.hpp"
@@ -100,7 +101,7 @@ class SquareWriter {
     std::vector<std::uint32_t> others;
     if (!options_.visible_faces_only()) return others;
     for (const std::uint32_t i : own)
-      for (const std::uint32_t other : footprints_.meeting(grown(footprints_.bounds(i), SolidIndex::joint_m)))
+      for (const std::uint32_t other : footprints_.meeting(grown(footprints_.bounds(i), joint_m)))
         if (!std::ranges::binary_search(own, other)) others.push_back(other);
     std::ranges::sort(others);
     const auto repeated = std::ranges::unique(others);

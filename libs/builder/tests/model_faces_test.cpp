@@ -123,6 +123,30 @@ TEST(FaceIndex, AWallBetweenTwoSolidsOfABuildingIsHidden) {
   }
 }
 
+/// Of the eastern wall of a house, 5 m high, before the western one of another, 4 m high.
+std::size_t left_across(double gap_m, double turned_by_m) {
+  const std::vector<ModelPolygon> house = box({0, 0, 0}, {10, 10, 5}, 1);
+  std::vector<ModelPolygon> other = box({10 + gap_m, 0, 0}, {20, 10, 4}, 1);
+  for (ModelPolygon& face : other)
+    for (Eigen::Vector3d& p : face.polygon.exterior)
+      if (p.x() < 15 && p.y() > 5) p.x() += turned_by_m;
+  Diagnostics diagnostics;
+  const std::vector<ModelFace> faces = model_faces(model_of(house, {}), diagnostics);
+  FaceIndex index;
+  index.add(0, faces);
+  index.add(1, model_faces(model_of(other, {}), diagnostics));
+  index.finish();
+  return left_of(index, faces[east]);
+}
+
+TEST(FaceIndex, WallsThatFaceEachOtherAcrossAJointAreOne) {
+  EXPECT_EQ(left_across(0.04, 0), 0u);
+  EXPECT_EQ(left_across(0.08, 0), 0u);
+  EXPECT_EQ(left_across(0.12, 0), 9u);
+  EXPECT_EQ(left_across(-0.1, 0.2), 0u);   // 1 degree
+  EXPECT_GT(left_across(0.06, 1.2), 7u);   // 7 degrees
+}
+
 TEST(FaceIndex, ASheetIsNotHiddenByItsOtherSideThoughTheBodyStatesThatToo) {
   // A fence of 3 cm, a part of its own; the body, which is no solid, names its eastern side.
   BuildingModel model = model_of(box({0, 0, 0}, {0.03, 10, 5}, 0), {});

@@ -22,11 +22,6 @@ class SolidIndex {
   /// @param normal  unit, outward
   void remove_hidden(const Face& face, const Eigen::Vector3d& normal, std::span<const std::uint32_t> candidates, std::vector<Eigen::Vector3d>& points) const;
 
-  static constexpr double touching_m = 0.05;   ///< gaps that no beam enters
-  /// Between walls that face each other in parallel. Each outline is drawn or rounded by a few centimetres of its own (OpenStreetMap keeps 1.1 cm), and joints between
-  /// houses are as wide; half a metre into such a gap a beam from outside meets the wall at 80 degrees.
-  static constexpr double joint_m = 0.10;
-
  private:
   std::span<const BuildingSolid> solids_;
   BoundsIndex index_;
