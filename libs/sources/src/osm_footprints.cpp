@@ -128,10 +128,9 @@ struct OsmFile {
 
 /// Calls `visit(object)` for each object of one type in a file, deleted ones too.
 template <class Object, class Visitor>
-void for_each_object(OsmFile& file, osmium::osm_entity_bits::type entities, int threads, const Visitor& visit) {
+void for_each_object(OsmFile& file, osmium::osm_entity_bits::type entities, osmium::thread::Pool& pool, const Visitor& visit) {
   std::int64_t last = std::numeric_limits<std::int64_t>::min();
   try {
-    osmium::thread::Pool pool(threads, 4 * static_cast<std::size_t>(threads));
     osmium::io::Reader reader(file.input.file(), entities, pool);
     while (const osmium::memory::Buffer buffer = reader.read())
       for (const Object& object : buffer.select<Object>()) {
@@ -154,8 +153,8 @@ bool is_wanted(const Relation& relation) {
   return relation.is_building_relation || (relation.is_multipolygon && (relation.is_building || relation.is_part || relation.says_nothing));
 }
 
-void read_relations(OsmFile& file, int threads, OsmObjects& objects, Diagnostics& diagnostics) {
-  for_each_object<osmium::Relation>(file, osmium::osm_entity_bits::relation, threads, [&](const osmium::Relation& object) {
+void read_relations(OsmFile& file, osmium::thread::Pool& pool, OsmObjects& objects, Diagnostics& diagnostics) {
+  for_each_object<osmium::Relation>(file, osmium::osm_entity_bits::relation, pool, [&](const osmium::Relation& object) {
     const auto known = objects.relations.find(object.id());
     if (file.is_deleted(object) || (known != objects.relations.end() && known->second.version >= file.version(object))) return;
     const OsmBuildingTags tags = building_tags(object);
@@ -175,8 +174,8 @@ void read_relations(OsmFile& file, int threads, OsmObjects& objects, Diagnostics
 }
 
 /// Later versions may be no building any more, or deleted: only objects that are known are compared with them.
-void leave_out_superseded_relations(OsmFile& file, int threads, OsmObjects& objects) {
-  for_each_object<osmium::Relation>(file, osmium::osm_entity_bits::relation, threads, [&](const osmium::Relation& object) {
+void leave_out_superseded_relations(OsmFile& file, osmium::thread::Pool& pool, OsmObjects& objects) {
+  for_each_object<osmium::Relation>(file, osmium::osm_entity_bits::relation, pool, [&](const osmium::Relation& object) {
     const auto known = objects.relations.find(object.id());
     if (known != objects.relations.end() && known->second.version < file.version(object)) objects.relations.erase(known);
   });
@@ -192,7 +191,7 @@ void put_in_order(std::vector<Way>& ways, std::size_t first) {
   ways.erase(repeated.begin(), repeated.end());
 }
 
-void read_ways(OsmFile& file, int threads, OsmObjects& objects, Diagnostics& diagnostics) {
+void read_ways(OsmFile& file, osmium::thread::Pool& pool, OsmObjects& objects, Diagnostics& diagnostics) {
   std::vector<WayId> wanted;
   for (const auto& [id, relation] : objects.relations)
     for (const Member& member : relation.members)
@@ -201,7 +200,7 @@ void read_ways(OsmFile& file, int threads, OsmObjects& objects, Diagnostics& dia
 
   const std::size_t first = objects.ways.size();
   WayContent content;
-  for_each_object<osmium::Way>(file, osmium::osm_entity_bits::way, threads, [&](const osmium::Way& object) {
+  for_each_object<osmium::Way>(file, osmium::osm_entity_bits::way, pool, [&](const osmium::Way& object) {
     if (file.is_deleted(object)) return;
     const OsmBuildingTags tags = building_tags(object);
     const bool building = tags.is_building() || tags.is_part();
@@ -221,9 +220,9 @@ void read_ways(OsmFile& file, int threads, OsmObjects& objects, Diagnostics& dia
   put_in_order(objects.ways, first);
 }
 
-void leave_out_superseded_ways(OsmFile& file, int threads, OsmObjects& objects) {
+void leave_out_superseded_ways(OsmFile& file, osmium::thread::Pool& pool, OsmObjects& objects) {
   std::unordered_set<WayId> superseded;
-  for_each_object<osmium::Way>(file, osmium::osm_entity_bits::way, threads, [&](const osmium::Way& object) {
+  for_each_object<osmium::Way>(file, osmium::osm_entity_bits::way, pool, [&](const osmium::Way& object) {
     const Way* known = objects.find_way(object.id());
     if (known && known->version < file.version(object)) superseded.insert(object.id());
   });
@@ -238,11 +237,11 @@ void list_wanted_nodes(OsmObjects& objects) {
   objects.node_versions.resize(objects.nodes.size());
 }
 
-void read_nodes(OsmFile& file, int threads, OsmObjects& objects) {
+void read_nodes(OsmFile& file, osmium::thread::Pool& pool, OsmObjects& objects) {
   const std::vector<OsmNodeId>& nodes = objects.nodes;
   auto cursor = nodes.begin();
   OsmNodeId last = std::numeric_limits<OsmNodeId>::min();
-  for_each_object<osmium::Node>(file, osmium::osm_entity_bits::node, threads, [&](const osmium::Node& node) {
+  for_each_object<osmium::Node>(file, osmium::osm_entity_bits::node, pool, [&](const osmium::Node& node) {
     // Files are nearly always sorted: then the cursor only walks on.
     if (node.id() < last) cursor = std::ranges::lower_bound(nodes, node.id());
     last = node.id();
@@ -446,6 +445,7 @@ FootprintList read_osm_footprints(const std::vector<fs::path>& paths, int thread
     if (const std::string& remark = files.back().notes.remark; !remark.empty())
       events.warn(path.string() + ": Overpass broke off: \"" + remark + "\"; parts are missing, ask for it again with a longer [timeout:] or a smaller area");
   }
+  osmium::thread::Pool pool(threads, 4 * static_cast<std::size_t>(threads));
   const double num_steps = 3.0 * static_cast<double>(files.size());
   double step = 0;
   const auto read_all = [&](const auto& read) {
@@ -457,14 +457,14 @@ FootprintList read_osm_footprints(const std::vector<fs::path>& paths, int thread
   const auto look_again = [&](const auto& leave_out_superseded) {
     const bool may_repeat = files.size() > 1 || std::ranges::any_of(files, [](const OsmFile& file) { return !file.is_in_order; });
     for (OsmFile& file : files)
-      if (may_repeat) leave_out_superseded(file, threads, objects);
+      if (may_repeat) leave_out_superseded(file, pool, objects);
   };
-  read_all([&](OsmFile& file) { read_relations(file, threads, objects, diagnostics); });
+  read_all([&](OsmFile& file) { read_relations(file, pool, objects, diagnostics); });
   look_again(leave_out_superseded_relations);
-  read_all([&](OsmFile& file) { read_ways(file, threads, objects, diagnostics); });
+  read_all([&](OsmFile& file) { read_ways(file, pool, objects, diagnostics); });
   look_again(leave_out_superseded_ways);
   list_wanted_nodes(objects);
-  read_all([&](OsmFile& file) { read_nodes(file, threads, objects); });
+  read_all([&](OsmFile& file) { read_nodes(file, pool, objects); });
   take_locations_of_ways(objects);
   for (const OsmFile& file : files)
     if (file.holds_history) events.warn(file.path.string() + ": holds several versions of objects, as history files do; the highest of each counts");

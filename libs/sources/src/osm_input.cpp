@@ -104,18 +104,20 @@ void let_libosmium_read_bzip2() {
   static_cast<void>(registered);
 }
 
-bool holds_nothing(const fs::path& file) {
-  std::array<char, 1> first{};
-  return ByteSource(file).read(first) == 0;
+std::string start_of(const fs::path& file) {
+  std::string start(4096, '\0');   // longer than any declaration
+  start.resize(ByteSource(file).read(start));
+  return start;
 }
 
 }  // namespace
 
 OsmInput::OsmInput(const fs::path& file) : path_(file) {
   let_libosmium_read_bzip2();
-  if (holds_nothing(file)) throw FormatError(file, "is empty; fetch it again");
+  const std::string start = start_of(file);
+  if (start.empty()) throw FormatError(file, "is empty; fetch it again");
   if (osmium::io::File(file.string()).format() != osmium::io::file_format::xml) return;
-  const std::string encoding = foreign_xml_encoding(file);
+  const std::string encoding = foreign_xml_encoding(start);
   if (encoding.empty()) return;
   const std::optional<SingleByteTable> table = single_byte_table(encoding);
   if (!table) throw FormatError(file, encoding_fault(encoding));

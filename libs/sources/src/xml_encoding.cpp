@@ -5,9 +5,6 @@
 
 #include <cerrno>
 #include <memory>
-#include <vector>
-
-#include "byte_source.hpp"
 
 namespace priormap {
 namespace {
@@ -54,7 +51,7 @@ std::optional<SingleByteTable> single_byte_table(const std::string& encoding) {
   return table;
 }
 
-std::string foreign_xml_encoding(const std::filesystem::path& file) {
+std::string foreign_xml_encoding(std::string_view start) {
   const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), &XML_ParserFree);
   std::string foreign;
   XML_SetUnknownEncodingHandler(
@@ -64,8 +61,6 @@ std::string foreign_xml_encoding(const std::filesystem::path& file) {
         return static_cast<int>(XML_STATUS_ERROR);
       },
       &foreign);
-  std::vector<char> start(4096);   // longer than any declaration
-  start.resize(ByteSource(file).read(start));
   XML_Parse(parser.get(), start.data(), static_cast<int>(start.size()), false);
   return foreign;
 }
