@@ -89,7 +89,10 @@ class Survey {
     const std::string file = hashed.path.string();
     read_models(hashed.path, reader_options(model_options_), [&](BuildingModel&& model) {
       if (model.polygons.empty()) return;
-      if (leaves_out(model, hashed)) return void(with_strays_.insert(file));
+      if (leaves_out(model, hashed)) {
+        with_strays_.insert(file);
+        return strays_.add(DiagnosticCode::far_from_the_rest, model.id, "lies far from the rest, outside the domain of the prior's CRS; left out");
+      }
       if (!groups_are_known_) groups_.add(model, file);
       const std::uint32_t number = num_models_++;
       if (!frames_) frames_ = std::make_unique<ModelFrames>(prior_options_, model.srs_name, first_point(model, file), file, DecidingPlaces{}, events_);
@@ -110,6 +113,8 @@ class Survey {
   /// Far from all others, where the prior's CRS is not made for.
   bool leaves_out(const BuildingModel& model, const HashedFile& file) const { return groups_.leaves_out(model, file.path.string()); }
   bool has_strays(const HashedFile& file) const { return with_strays_.contains(file.path.string()); }
+  /// What was left out, also of files that hold nothing else.
+  const Diagnostics& strays() const { return strays_; }
   /// Once, after the last `read`.
   void finish() { faces_.finish(); }
   /// Once, after the last `read`. Nothing without --visible-from.
@@ -130,7 +135,8 @@ class Survey {
   const Events& events_;
   ModelGroups groups_;
   bool groups_are_known_ = false;
-  std::set<std::string> with_strays_;
+  std::set<std::string> with_strays_;   ///< files
+  Diagnostics strays_;
   std::unique_ptr<ModelFrames> frames_;
   std::map<std::string, ModelSourceFrame> file_frame_;
   std::uint32_t num_models_ = 0;
@@ -314,10 +320,7 @@ class Sampling {
                                std::to_string(model.unresolved_references) + " references to what the file does not hold");
       }
       if (model.polygons.empty()) return;
-      if (survey_.leaves_out(model, file)) {
-        report.diagnostics.add(DiagnosticCode::far_from_the_rest, model.id, "lies far from the rest, outside the domain of the prior's CRS; left out");
-        return;
-      }
+      if (survey_.leaves_out(model, file)) return;
       report.polygons += static_cast<std::size_t>(std::ranges::count(model.polygons, false, &ModelPolygon::repeated));
       frames_.to_prior(model, file.path.string());
       for (const ModelPolygon& polygon : model.polygons) for_each_ring(polygon.polygon, [&](const Ring3& ring) { num_vertices_ += ring.size(); });
@@ -441,6 +444,7 @@ ModelReport build_model_prior(const std::vector<std::filesystem::path>& inputs, 
   PriorWriter writer(output, manifest_of(survey.frames()->prior(), prior_options, sources, generator), overwrite);
 
   ModelReport report;
+  report.diagnostics.merge(survey.strays());
   const SightCounts points = write_models(with_models, survey, prior_options, model_options, writer, sources, report, threads);
   if (report.buildings + report.bridges + report.plants + report.terrain_models == 0) {
     throw FormatError(files.front().path, prior_options.bbox.empty() ? "none of its buildings could be built"

@@ -34,6 +34,16 @@ for prior in first last; do
   cmp town/tiles.idx $prior/tiles.idx || die "the stray changes the prior"
 done
 
+# The same from a file of its own, which is no source of the prior.
+model $srs "$(block stray 5689000 5338000)" >alone.gml
+for files in "town.gml alone.gml" "alone.gml town.gml"; do
+  succeeds citygml2prior $files --assume-vertical EPSG:7837 --overwrite -o two
+  expect_in stdout "buildings                   12"
+  expect_in stdout "diagnostic 708              1"
+  ! grep -q "holds no building" stderr || die "the file of the stray is said to hold nothing"
+  cmp town/tiles.idx two/tiles.idx || die "the stray changes the prior"
+done
+
 # In degrees the zone of the prior, and the operation, are those of the town.
 degrees=$(for i in {1..12}; do block "b$i" "48.15" "$(awk -v i="$i" 'BEGIN { printf "%.5f", 11.5 + 0.001 * i }')" "" 0.0001; done)
 srs=urn:ogc:def:crs:EPSG::4258
