@@ -264,13 +264,13 @@ class CityGmlPass : public XmlReader {
   void end_polygon(const Frame&) {
     in_polygon_ = false;
     has_exterior_ = false;
-    geometry_.items.push_back({context_, std::move(polygon_), {}, {}});
+    geometry_.items.push_back({context_, std::move(polygon_), {}, {}, false});
   }
 
   void add_reference(const char* href) {
     const char* fragment = std::strchr(href, '#');
     if (++num_vertices_ > max_vertices) return stop("a building of more than 8 million vertices");
-    geometry_.items.push_back({context_, {}, fragment == href ? fragment + 1 : href, {}});
+    geometry_.items.push_back({context_, {}, fragment == href ? fragment + 1 : href, {}, false});
   }
 
   void end_matrix() {

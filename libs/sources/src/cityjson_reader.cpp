@@ -161,7 +161,7 @@ class GeometryReader {
   template <class Vertex>
   void read_surface(const json& rings, const json& value, const json& surfaces, const Vertex& vertex) {
     if (!rings.is_array()) document_.fail("'boundaries' is not nested as its geometry type demands");
-    GeometryItem item{context_, {}, {}, {}};
+    GeometryItem item{context_, {}, {}, {}, false};
     if (value.is_number_unsigned() && surfaces.is_array() && value.get<std::size_t>() < surfaces.size()) {
       const json& surface = surfaces[value.get<std::size_t>()];
       const std::string type = surface.is_object() && surface.contains("type") && surface["type"].is_string() ? surface["type"].get<std::string>() : "";
@@ -208,6 +208,7 @@ class GeometryReader {
     for (std::size_t i = first; i < items_.items.size(); ++i) {
       Polygon3& polygon = items_.items[i].polygon.polygon;
       referenced_.add_placed(polygon, num_placed_);
+      items_.items[i].is_placed = true;
       place(polygon, T_model_template);
     }
   }
@@ -249,8 +250,8 @@ class Buildings {
     const int number = id == building ? 0 : ++members.num_parts;
     GeometryReader(document_, options_, number, kind == ModelKind::terrain, members.items, referenced_, members.num_placed).read(object.value("geometry", json::array()));
     if (++members.seen < members.expected) return;
-    emit(building, *kind, std::move(members.items));
-    if (kind == ModelKind::vegetation) referenced_.give_back(members.num_placed);   // the others are kept: they hide each other
+    const std::size_t num_placed = emit(building, *kind, std::move(members.items));
+    if (kind == ModelKind::vegetation) referenced_.give_back(num_placed);   // the others are kept: they hide each other
     members_.erase(building);
   }
 
@@ -274,13 +275,15 @@ class Buildings {
     return id;
   }
 
-  void emit(const std::string& id, ModelKind kind, GeometryItems&& items) {
+  /// @return as `assemble`
+  std::size_t emit(const std::string& id, ModelKind kind, GeometryItems&& items) {
     BuildingModel model;
     model.id = id;
     model.kind = kind;
     model.srs_name = document_.srs_name;
-    assemble(std::move(items), GeometryItems{}, options_, referenced_, model);
+    const std::size_t num_placed = assemble(std::move(items), GeometryItems{}, options_, referenced_, model);
     sink_(std::move(model));
+    return num_placed;
   }
 
   const Document& document_;

@@ -142,7 +142,6 @@ class References {
     return std::move(resolved_);
   }
   std::size_t unresolved() const { return unresolved_; }
-  std::size_t num_placed() const { return num_placed_; }
 
  private:
   void follow(const GeometryItem& reference, const GeometryItems& home, std::size_t index, bool flip) {
@@ -158,9 +157,9 @@ class References {
     }
     const int solid = context.solid != 0 ? context.solid : &home == &geometry_ ? target.context.solid : -target.context.solid;
     if (!reference.placement && !brought_in_.insert({&target, context.lod, context.object, solid}).second) return;
-    GeometryItem copy{context, target.polygon, {}, {}};
+    GeometryItem copy{context, target.polygon, {}, {}, reference.placement.has_value()};
     copy.context.solid = solid;
-    if (!count(copy, reference.placement.has_value())) return;
+    if (!count(copy)) return;
     if (reference.placement) place(copy.polygon.polygon, *reference.placement);
     if (flip) reverse(copy.polygon.polygon);
     copy.polygon.shared = !reference.placement;
@@ -182,16 +181,16 @@ class References {
     for (const auto& [solid, side] : said.solids) {
       GeometryItem face = item;
       face.context.solid = solid;
-      if (!std::exchange(is_first, false) && !count(face, false)) return;
+      if (!std::exchange(is_first, false) && !count(face)) return;
       if (side.is_turned()) reverse(face.polygon.polygon);
       resolved_.push_back(std::move(face));
     }
   }
 
   /// False where the model has too many.
-  bool count(const GeometryItem& item, bool placed) {
+  bool count(const GeometryItem& item) {
     const Polygon3& polygon = item.polygon.polygon;
-    if (placed) vertices_.add_placed(polygon, num_placed_);
+    if (item.is_placed) vertices_.add_placed(polygon, num_placed_);
     num_vertices_ += num_vertices_of(polygon);
     if (num_vertices_ <= ReferencedVertices::most_of_model) return true;
     ++unresolved_;
@@ -256,7 +255,10 @@ std::size_t assemble(GeometryItems geometry, const GeometryItems& shared, const 
   std::ranges::stable_sort(items, {}, [](const GeometryItem& item) { return item.context.solid == 0; });
   SeenPolygons seen;
   std::vector<bool> is_named;
+  std::size_t num_placed = 0, num_kept = 0;
   for (GeometryItem& item : items) {
+    const std::size_t placed = item.is_placed ? num_vertices_of(item.polygon.polygon) : 0;
+    num_placed += placed;
     const GeometryContext& context = item.context;
     const auto lod = lods.find(context.object);
     if (lod == lods.end() || lod->second != context.lod) continue;
@@ -267,6 +269,7 @@ std::size_t assemble(GeometryItems geometry, const GeometryItems& shared, const 
       is_named[face] = true;
     }
     if (!met.repeats.empty()) continue;
+    num_kept += placed;
     item.polygon.repeated = met.elsewhere;
     item.polygon.surface_class = context.surface_class;
     item.polygon.part = context.object;
@@ -275,7 +278,8 @@ std::size_t assemble(GeometryItems geometry, const GeometryItems& shared, const 
     model.polygons.push_back(std::move(item.polygon));
     is_named.push_back(context.thematic);
   }
-  return references.num_placed();
+  referenced.give_back(num_placed - num_kept);
+  return num_kept;
 }
 
 std::optional<SurfaceClass> surface_class_of(std::string_view name) {

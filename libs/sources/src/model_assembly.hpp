@@ -28,6 +28,7 @@ struct GeometryItem {
   ModelPolygon polygon;        ///< empty for a reference
   std::string reference;       ///< without '#'; empty for a polygon
   std::optional<Eigen::Affine3d> placement;   ///< of a reference to a template (implicit geometry): T_model_template
+  bool is_placed = false;      ///< a polygon that a template has put here, counted by ReferencedVertices
 };
 
 /// Polygons and references in the order of the file; ids of polygons, surfaces and solids stand for ranges of them.
@@ -44,8 +45,8 @@ class ReferencedVertices {
   /// Of templates, which a few lines place again and again, and which cannot be left out one by one. @param of_model  so far; the polygon's are added
   /// @throws FormatError where those of the model or of the file are too many
   void add_placed(const Polygon3& polygon, std::size_t& of_model);
-  /// Of a model that nobody keeps once it has been read.
-  void give_back(std::size_t of_model) { of_file_ -= of_model; }
+  /// Of what nobody keeps: of a level that is not chosen, or a whole model once it has been read.
+  void give_back(std::size_t dropped) { of_file_ -= dropped; }
 
   static constexpr std::size_t most_of_model = 8'000'000, most_of_file = 32'000'000;
 
@@ -65,7 +66,7 @@ std::vector<std::string> missing_references(const GeometryItems& geometry);
 
 /// Resolves references (`shared` holds what is stated outside the building), chooses the level of detail of the building and
 /// of each part, drops what a part repeats of itself and marks what it repeats of others. Fills `model.polygons`, `model.lod` and `model.unresolved_references`.
-/// @return how many of `referenced` are the model's
+/// @return how many of `referenced` are the model's, after those that are dropped were given back
 std::size_t assemble(GeometryItems geometry, const GeometryItems& shared, const BuildingModelOptions& options, ReferencedVertices& referenced, BuildingModel& model);
 
 /// Boundary surface names of CityGML 1 to 3 and CityJSON, such as "WallSurface"; nullopt for other names.

@@ -245,17 +245,18 @@ TEST(CityGml, TemplatesPlacedBeyondWhatABuildingMayHoldAreRefused) {
   std::string ring;
   for (int i = 0; i < 40'000; ++i) ring += std::to_string(i) + " " + std::to_string(i % 2) + " 0 ";
   const std::string huge = "<gml:Polygon><gml:exterior><gml:LinearRing><gml:posList>" + ring + "0 0 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>";
-  const auto placed = [](const std::string& geometry) {
+  const auto placed = [](const std::string& geometry, int x = 0) {
     return "<bldg:outerBuildingInstallation><bldg:BuildingInstallation><bldg:lod3ImplicitRepresentation><core:ImplicitGeometry>" + geometry +
+           "<core:referencePoint><gml:Point><gml:pos>" + std::to_string(x) + " 0 10</gml:pos></gml:Point></core:referencePoint>"
            "</core:ImplicitGeometry></bldg:lod3ImplicitRepresentation></bldg:BuildingInstallation></bldg:outerBuildingInstallation>";
   };
   const std::string stated = building(placed("<core:relativeGMLGeometry><gml:MultiSurface gml:id='shape'>" + member(huge) + "</gml:MultiSurface></core:relativeGMLGeometry>"), "a");
   BuildingModelOptions options;
-  const auto message = [&](int buildings, int placements) -> std::string {
+  const auto message = [&](int buildings, int placements, bool in_one_place = false) -> std::string {
     std::string text = stated;
     for (int b = 0; b < buildings; ++b) {
       std::string all;
-      for (int i = 0; i < placements; ++i) all += placed("<core:relativeGMLGeometry xlink:href='#shape'/>");
+      for (int i = 0; i < placements; ++i) all += placed("<core:relativeGMLGeometry xlink:href='#shape'/>", in_one_place ? 0 : i);
       text += building(all, "b" + std::to_string(b));
     }
     const TemporaryFile file(".gml", document(text));
@@ -269,6 +270,7 @@ TEST(CityGml, TemplatesPlacedBeyondWhatABuildingMayHoldAreRefused) {
   EXPECT_EQ(message(2, 150), "");
   EXPECT_NE(message(1, 250).find("more than 8 million vertices"), std::string::npos);
   EXPECT_NE(message(6, 150).find("more than 32 million vertices"), std::string::npos);
+  EXPECT_EQ(message(6, 150, true), "");   // of which one is kept
   options.lod = 2;   // as the messages say
   EXPECT_EQ(message(1, 250), "");
   EXPECT_EQ(message(6, 150), "");
