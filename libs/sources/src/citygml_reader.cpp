@@ -183,7 +183,7 @@ class CityGmlPass : public XmlReader {
       leave(frame);
       const std::size_t num_items = geometry_.items.size();
       if (geometry_on_ && !frame.id.empty() && num_items > frame.first_item) {
-        geometry_.ranges.try_emplace(frame.id, GeometryItems::Range{frame.first_item, num_items});
+        geometry_.ranges.try_emplace(frame.id, GeometryItems::Range{frame.first_item, num_items, frame.context.flip});
       }
     }
     context_ = frame.context;
@@ -292,7 +292,7 @@ class CityGmlPass : public XmlReader {
         templates_.items.push_back(geometry_.items[i]);
         num_template_vertices_ += geometry_.items[i].polygon.polygon.exterior.size();
       }
-      templates_.ranges[id] = {begin, templates_.items.size()};
+      templates_.ranges[id] = {begin, templates_.items.size(), range.flip};
     }
     if (num_template_vertices_ > max_vertices) return stop("templates of implicit geometry of more than 8 million vertices");
     std::erase_if(geometry_.ranges, [&](const auto& entry) { return entry.second.begin >= template_items_.begin && entry.second.end <= template_items_.end; });
@@ -351,7 +351,7 @@ std::size_t collect_shared(const std::filesystem::path& file, const BuildingMode
       const std::size_t begin = shared.items.size();
       shared.items.insert(shared.items.end(), geometry.items.begin() + static_cast<std::ptrdiff_t>(range.begin),
                           geometry.items.begin() + static_cast<std::ptrdiff_t>(range.end));
-      shared.ranges[id] = {begin, shared.items.size()};
+      shared.ranges[id] = {begin, shared.items.size(), range.flip};
       ++found;
     }
   };

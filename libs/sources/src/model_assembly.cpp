@@ -67,7 +67,8 @@ class Resolver {
  public:
   Resolver(const GeometryItems& own, const GeometryItems& shared) : own_(own), shared_(shared) {}
 
-  /// Calls `found(home, index, flip)` for every polygon that `id` stands for; false when the id is known nowhere.
+  /// Calls `found(home, index, flip, own_flip)` for every polygon that `id` stands for; false when the id is known nowhere.
+  /// `flip`: by the references that lead there; `own_flip`: inside of what the last of them refers to.
   template <class Found>
   bool resolve(const std::string& id, bool flip, const Found& found) {
     if (!open_.insert(id).second) return true;   // a circle
@@ -83,10 +84,11 @@ class Resolver {
     if (range == home.ranges.end()) return false;
     for (std::size_t i = range->second.begin; i < range->second.end && ++steps_ < max_steps; ++i) {
       const GeometryItem& item = home.items[i];
+      const bool own_flip = item.context.flip != range->second.flip;
       if (item.reference.empty()) {
-        found(home, i, flip);
+        found(home, i, flip, own_flip);
       } else {
-        resolve(item.reference, flip != item.context.flip, found);
+        resolve(item.reference, flip != own_flip, found);
       }
     }
     return true;
@@ -130,7 +132,7 @@ class References {
     for (const GeometryItem& reference : geometry_.items) {
       if (reference.reference.empty()) continue;
       const bool known = resolver.resolve(reference.reference, reference.context.flip,
-                                          [&](const GeometryItems& home, std::size_t index, bool flip) { follow(reference, home, index, flip); });
+                                          [&](const GeometryItems& home, std::size_t index, bool flip, bool own_flip) { follow(reference, home, index, flip, own_flip); });
       if (!known) ++unresolved_;
     }
     const SaidOfPolygon nothing;
@@ -144,7 +146,7 @@ class References {
   std::size_t unresolved() const { return unresolved_; }
 
  private:
-  void follow(const GeometryItem& reference, const GeometryItems& home, std::size_t index, bool flip) {
+  void follow(const GeometryItem& reference, const GeometryItems& home, std::size_t index, bool flip, bool own_flip) {
     const GeometryContext& context = reference.context;
     if (!is_level_wanted(context.lod, options_)) return;
     const GeometryItem& target = home.items[index];
@@ -161,7 +163,7 @@ class References {
     copy.context.solid = solid;
     if (!count(copy)) return;
     if (reference.placement) place(copy.polygon.polygon, *reference.placement);
-    if (flip) reverse(copy.polygon.polygon);
+    if (flip != own_flip) reverse(copy.polygon.polygon);
     copy.polygon.shared = !reference.placement;
     resolved_.push_back(std::move(copy));
   }

@@ -33,7 +33,10 @@ struct GeometryItem {
 
 /// Polygons and references in the order of the file; ids of polygons, surfaces and solids stand for ranges of them.
 struct GeometryItems {
-  struct Range { std::size_t begin, end; };
+  struct Range {
+    std::size_t begin, end;
+    bool flip = false;   ///< of what the element stands in: who refers to it does not stand there
+  };
   std::vector<GeometryItem> items;
   std::unordered_map<std::string, Range> ranges;
 };

@@ -182,6 +182,24 @@ TEST(CityGml, AnOrientedSurfaceTurnsItsPolygonOver) {
   EXPECT_LT((ring[1] - ring[0]).cross(ring[2] - ring[0]).z(), 0);
 }
 
+TEST(CityGml, AReferenceToAnOrientedSurfaceBringsItsOrientation) {
+  const auto part = [](const std::string& content) { return "<bldg:consistsOfBuildingPart><bldg:BuildingPart>" + content + "</bldg:BuildingPart></bldg:consistsOfBuildingPart>"; };
+  const std::string oriented = "<gml:OrientableSurface gml:id='o' orientation='-'><gml:baseSurface>" + square("p", 0) + "</gml:baseSurface></gml:OrientableSurface>";
+  const std::string of_both = "<gml:CompositeSurface gml:id='c'>" + member(oriented) + "</gml:CompositeSurface>";
+  const std::string turned_link = member("<gml:OrientableSurface orientation='-'><gml:baseSurface xlink:href='#o'/></gml:OrientableSurface>");
+  for (const auto& [reference, looks_up] : {std::pair(link("p"), true), {link("o"), false}, {link("c"), false}, {turned_link, true}}) {
+    const std::string stated = solid(member(of_both)), referring = solid(reference);
+    for (const auto& models : {read(document(building(part(stated) + part(referring)))), read(document(building(part(referring) + part(stated)))), read(document(building(stated) + building(referring, "b2")))}) {
+      std::vector<double> heights;
+      for (const BuildingModel& model : models)
+        for (const ModelPolygon& polygon : model.polygons)
+          if (polygon.shared) heights.push_back(newell_normal(polygon.polygon).z());
+      ASSERT_EQ(heights.size(), 1u) << reference;
+      EXPECT_EQ(heights[0] > 0, looks_up) << reference;
+    }
+  }
+}
+
 TEST(CityGml, ASolidSaysWhichWayItsBoundarySurfaceLooks) {
   const auto looks_up = [](const std::string& content) {
     const auto models = read(document(building(content)));
