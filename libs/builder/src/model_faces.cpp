@@ -60,27 +60,58 @@ void turn_over(ModelFace& face) {
   face.normal = -face.normal;
 }
 
+/// Twice the integral over a face of places, from `anchor`, times the normal: the sum over the triangles that fan out from a corner of each ring.
+Eigen::Matrix3d twice_moment_of(const Polygon3& polygon, const Eigen::Vector3d& anchor) {
+  const auto of_ring = [&](const Ring3& ring) {
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for_each_edge(ring, [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+      const Eigen::Vector3d& corner = ring.front();
+      sum += ((corner + a + b) / 3 - anchor) * (a - corner).cross(b - corner).transpose();
+    });
+    return sum;
+  };
+  Eigen::Matrix3d moment = of_ring(polygon.exterior);
+  const Eigen::Vector3d normal = newell_normal(polygon.exterior);
+  for (const Ring3& hole : polygon.holes) moment += (newell_normal(hole).dot(normal) > 0 ? -1 : 1) * of_ring(hole);
+  return moment;
+}
+
 /// Sums over the faces of a solid.
 struct Solid {
   void add(const ModelFace& face, const Eigen::Vector3d& anchor) {
-    const Eigen::Vector3d twice = newell_normal(face.polygon);
+    const Eigen::Vector3d twice = newell_normal(face.polygon), middle = middle_of(face.polygon.exterior) - anchor;
     twice_vector_area += twice;
     twice_area += twice.norm();
-    six_volumes += twice.dot(middle_of(face.polygon.exterior) - anchor);
+    twice_moment += twice_moment_of(face.polygon, anchor);
+    twice_distances += twice.norm() * middle.norm();
+    six_volumes += twice.dot(middle);
   }
-  /// The vectors of area cancel where faces close a solid.
+  Solid& operator+=(const Solid& other) {
+    twice_vector_area += other.twice_vector_area;
+    twice_area += other.twice_area;
+    twice_moment += other.twice_moment;
+    twice_distances += other.twice_distances;
+    six_volumes += other.six_volumes;
+    return *this;
+  }
+  /// The vectors of area cancel where faces close a solid, and where what they leave open on one side they leave open on the other.
+  bool vectors_cancel() const { return twice_vector_area.norm() < rounding * twice_area; }
+  /// By the divergence theorem the moment of a closed surface is the volume times the unit matrix, however its faces meet: edges need not be the same on both
+  /// sides, as in many models they are not. An open tube has none along itself.
   bool is_closed() const {
-    constexpr double rounding = 1e-3;
-    return twice_vector_area.norm() < rounding * twice_area;
+    const Eigen::Matrix3d of_volume = twice_moment.trace() / 3 * Eigen::Matrix3d::Identity();
+    return vectors_cancel() && (twice_moment - of_volume).norm() < rounding * twice_distances;
   }
-  /// Only of a closed solid the volume does not depend on the anchor.
+  /// Only where the vectors cancel the volume does not depend on the anchor.
   bool looks_inward() const {
     constexpr double least_thickness = 1e-6;
-    return is_closed() && six_volumes < -least_thickness * std::pow(twice_area, 1.5);
+    return vectors_cancel() && six_volumes < -least_thickness * std::pow(twice_area, 1.5);
   }
 
+  static constexpr double rounding = 1e-3;
   Eigen::Vector3d twice_vector_area = Eigen::Vector3d::Zero();
-  double twice_area = 0, six_volumes = 0;
+  Eigen::Matrix3d twice_moment = Eigen::Matrix3d::Zero();
+  double twice_area = 0, twice_distances = 0, six_volumes = 0;
 };
 
 std::map<SolidKey, Solid> solids_of(const std::vector<ModelFace>& faces) {
@@ -99,7 +130,7 @@ void turn_shared_faces(std::vector<ModelFace>& faces, const std::vector<bool>& s
   for (auto& [key, solid] : solids_of(faces)) {
     std::set<std::size_t> turned;
     constexpr int passes = 4;   // a wall in pieces, of which some are turned already
-    for (int pass = 0; pass < passes && !solid.is_closed(); ++pass)
+    for (int pass = 0; pass < passes && !solid.vectors_cancel(); ++pass)
       for (const std::size_t i : shared_of[key]) {
         const bool is_turned = turned.contains(i);
         const Eigen::Vector3d twice = (is_turned ? -1 : 1) * newell_normal(faces[i].polygon);
@@ -108,7 +139,7 @@ void turn_shared_faces(std::vector<ModelFace>& faces, const std::vector<bool>& s
         if (is_turned) turned.erase(i);
         else turned.insert(i);
       }
-    if (!solid.is_closed()) continue;
+    if (!solid.vectors_cancel()) continue;
     for (const std::size_t i : turned) turn_over(faces[i]);
   }
 }
@@ -123,8 +154,7 @@ void close_solids(std::vector<ModelFace>& faces) {
     const SolidKey beside{part, 0};
     if (open.size() != 1 || !solids.contains(beside)) continue;
     Solid both = solids[open.front()];
-    both.twice_vector_area += solids[beside].twice_vector_area;
-    both.twice_area += solids[beside].twice_area;
+    both += solids[beside];
     if (!both.is_closed()) continue;
     for (ModelFace& face : faces)
       if (face.solid == beside) face.solid = open.front();

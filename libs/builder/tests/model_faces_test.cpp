@@ -62,6 +62,39 @@ TEST(ModelFaces, AFaceStatedBesideTheSolidThatItClosesBelongsToIt) {
   EXPECT_TRUE(closed_solids(model_faces(model, diagnostics)).empty());
 }
 
+/// A passage 10 m long, open at its western and eastern end, beside a box.
+BuildingModel passage() {
+  BuildingModel model = model_of(box({0, 0, 0}, {10, 4, 3}, 1), box({50, 0, 0}, {60, 4, 3}, 2));
+  model.polygons.erase(model.polygons.begin() + west);
+  model.polygons.erase(model.polygons.begin() + east);
+  return model;
+}
+
+TEST(ModelFaces, ATubeThatIsOpenAtBothEndsEnclosesNothing) {
+  Diagnostics diagnostics;
+  BuildingModel model = passage();
+  EXPECT_EQ(closed_solids(model_faces(model, diagnostics)), (std::set<SolidKey>{{0, 2}}));
+  const std::vector<ModelPolygon> whole = box({0, 0, 0}, {10, 4, 3}, 0);
+  model.polygons.push_back(whole[west]);
+  model.polygons.push_back(whole[east]);   // stated beside the tube
+  EXPECT_EQ(closed_solids(model_faces(model, diagnostics)), (std::set<SolidKey>{{0, 1}, {0, 2}}));
+}
+
+TEST(ModelFaces, ASolidIsClosedThoughItsFacesMeetInOtherCorners) {
+  // The eastern wall in two, the north with a window in the wall's hole.
+  BuildingModel model = model_of(box({0, 0, 0}, {10, 10, 5}, 1), {});
+  model.polygons[east].polygon.exterior = {{10, 0, 0}, {10, 4, 0}, {10, 4, 5}, {10, 0, 5}};
+  model.polygons.push_back(polygon({{10, 4, 0}, {10, 10, 0}, {10, 10, 5}, {10, 4, 5}}, 1));
+  model.polygons[4].polygon.holes = {{{3, 10, 2}, {3, 10, 3}, {4, 10, 3}, {4, 10, 2}}};
+  model.polygons.push_back(polygon({{4, 10, 2}, {3, 10, 2}, {3, 10, 3}, {4, 10, 3}}, 1));
+  Diagnostics diagnostics;
+  EXPECT_EQ(closed_solids(model_faces(model, diagnostics)).size(), 1u);
+  for (Ring3& hole : model.polygons[4].polygon.holes) std::ranges::reverse(hole);
+  EXPECT_EQ(closed_solids(model_faces(model, diagnostics)).size(), 1u);
+  model.polygons.pop_back();
+  EXPECT_TRUE(closed_solids(model_faces(model, diagnostics)).empty());
+}
+
 TEST(ModelFaces, AWallThatTwoSolidsShareLooksOutOfEach) {
   for (const bool turns : {false, true}) {
     Diagnostics diagnostics;
@@ -145,6 +178,18 @@ TEST(FaceIndex, WallsThatFaceEachOtherAcrossAJointAreOne) {
   EXPECT_EQ(left_across(0.12, 0), 9u);
   EXPECT_EQ(left_across(-0.1, 0.2), 0u);   // 1 degree
   EXPECT_GT(left_across(0.06, 1.2), 7u);   // 7 degrees
+}
+
+TEST(FaceIndex, WhatStandsInAPassageIsSeen) {
+  Diagnostics diagnostics;
+  const std::vector<ModelFace> kiosk = model_faces(model_of(box({4, 1, 0}, {6, 3, 2.5}, 1), {}), diagnostics);
+  FaceIndex index;
+  index.add(0, kiosk);
+  index.add(1, model_faces(passage(), diagnostics));
+  index.finish();
+  std::vector<Eigen::Vector3d> points{{6, 2, 1}}, normals{kiosk[east].normal};
+  index.remove_hidden(0, kiosk[east], points, normals);
+  EXPECT_EQ(points.size(), 1u);
 }
 
 TEST(FaceIndex, ASheetIsNotHiddenByItsOtherSideThoughTheBodyStatesThatToo) {
