@@ -17,7 +17,7 @@
 namespace priormap {
 namespace {
 
-constexpr std::size_t buffer_size = std::size_t{1} << 18;
+constexpr std::size_t buffer_size = std::size_t{1} << 16;   // larger ones come fresh from the system each time, and cost more than they save
 
 FileHandle open(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file)) throw IoError(file, "is a directory, not a file");

@@ -8,7 +8,7 @@
 
 namespace priormap {
 
-Bzip2Stream::Bzip2Stream(FileHandle file) : file_(std::move(file)), packed_(std::size_t{1} << 18) {}
+Bzip2Stream::Bzip2Stream(FileHandle file) : file_(std::move(file)), packed_(std::size_t{1} << 16) {}
 
 Bzip2Stream::~Bzip2Stream() { end_stream(); }
 

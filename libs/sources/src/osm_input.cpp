@@ -57,7 +57,7 @@ void copy_as_utf8(const fs::path& file, const SingleByteTable& table, int descri
   std::array<std::string, 256> utf8_of;
   for (std::size_t i = 0; i < 256; ++i) utf8_of[i] = utf8(table[i] < 0 ? 0xfffd : table[i]);
   ByteSource bytes(file);
-  std::vector<char> chunk(std::size_t(1) << 20);
+  std::vector<char> chunk(std::size_t(1) << 16);
   std::string out;
   // bzip2 packs maps to a tenth of their size or so, and emptiness to a millionth: that would fill the folder.
   constexpr std::uintmax_t most_per_packed = 100, always_allowed = std::uintmax_t{64} << 20;
@@ -81,7 +81,7 @@ class Bzip2Decompressor : public osmium::io::Decompressor {
  public:
   explicit Bzip2Decompressor(FileHandle file) : stream_(std::move(file)) {}
   std::string read() override {
-    std::string buffer(input_buffer_size, '\0');
+    std::string buffer(std::size_t(1) << 16, '\0');
     buffer.resize(stream_.read(buffer));
     return buffer;
   }

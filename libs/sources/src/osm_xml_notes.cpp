@@ -69,7 +69,7 @@ bool has_attribute(std::string_view text, std::string_view name) {
 bool may_hold_notes(const std::filesystem::path& file) {
   constexpr std::size_t overlap = 16;   // more than a word and what stands around it
   ByteSource bytes(file);
-  std::vector<char> chunk(overlap + (std::size_t(1) << 18));
+  std::vector<char> chunk(overlap + (std::size_t(1) << 16));
   std::size_t kept = 0;   // of the chunk before
   for (bool is_first = true, is_last = false; !is_last; is_first = false) {
     const std::size_t n = bytes.read(std::span(chunk).subspan(kept));

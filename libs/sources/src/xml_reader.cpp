@@ -59,7 +59,7 @@ void XmlReader::run() {
   XML_SetUnknownEncodingHandler(parser_, fill_table, &cause_);
 
   ByteSource bytes(file_);
-  constexpr int chunk = 1 << 18;
+  constexpr int chunk = 1 << 16;
   std::size_t fed = 0;
   for (bool last = false; !last;) {
     char* buffer = static_cast<char*>(XML_GetBuffer(parser_, chunk));
