@@ -232,7 +232,7 @@ double distortion_at(PJ* from_degrees, const GeoPoint& place, const Eigen::Vecto
 Crs::Crs(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
 Crs Crs::parse(const std::string& text) {
-  const ProjContext context;
+  const ProjContext& context = ProjContext::of_thread();
   const std::string definition = proj_definition(text);
   const ProjObject crs = create_crs(context, definition);
   if (!crs) fail_unreadable(text, context);
@@ -253,7 +253,7 @@ Crs Crs::utm_zone(double lon_deg, double lat_deg, bool prefer_etrs89) {
 }
 
 Crs Crs::transverse_mercator(const Crs& geographic, double lat_0_deg, double lon_0_deg, double k_0) {
-  const ProjContext context;
+  const ProjContext& context = ProjContext::of_thread();
   const Crs base_crs = geographic.geographic_base();
   const ProjObject base = create_crs(context, base_crs.name());
   const ProjObject conversion(proj_create_conversion_transverse_mercator(context, lat_0_deg, lon_0_deg, k_0, 0, 0, "degree",
@@ -284,7 +284,7 @@ std::string Crs::wkt1() const {
 }
 
 std::string Crs::proj_string() const {
-  const ProjContext context;
+  const ProjContext& context = ProjContext::of_thread();
   const ProjObject crs = create_crs(context, name());
   const char* text = crs ? proj_as_proj_string(context, crs.get(), PJ_PROJ_4, nullptr) : nullptr;
   if (!text) throw CrsError(impl_->human_name + " cannot be written as a PROJ string");
@@ -305,7 +305,7 @@ Crs Crs::with_vertical(const Crs& vertical) const {
   const auto heights = vertical.vertical();
   if (!heights) throw CrsError(vertical.human_name() + " has no vertical coordinate reference system; give one such as EPSG:7837");
   const Crs flat = horizontal();
-  const ProjContext context;
+  const ProjContext& context = ProjContext::of_thread();
   const ProjObject lower = create_crs(context, flat.name()), upper = create_crs(context, heights->name());
   const std::string joint_name = flat.human_name() + " + " + heights->human_name();
   const ProjObject compound(proj_create_compound_crs(context, joint_name.c_str(), lower.get(), upper.get()));
@@ -320,7 +320,7 @@ Crs Crs::geographic_base() const {
 }
 
 std::optional<LonLatArea> Crs::area_of_use() const {
-  const ProjContext context;
+  const ProjContext& context = ProjContext::of_thread();
   const ProjObject crs = create_crs(context, horizontal().name());
   LonLatArea area;
   const char* name = nullptr;
@@ -333,7 +333,7 @@ double Crs::length_distortion(const GeoPoint& place) const { return length_disto
 
 std::vector<double> Crs::length_distortions(std::span<const GeoPoint> places) const {
   const Crs flat = horizontal();
-  const ProjContext context;
+  const ProjContext& context = ProjContext::of_thread();
   const ProjObject stated = create_crs(context, flat.name());
   const ProjObject from_degrees = from_degrees_of_its_datum(context, stated.get());
   if (!from_degrees) return std::vector<double>(places.size(), std::numeric_limits<double>::infinity());
@@ -348,7 +348,7 @@ std::vector<double> Crs::length_distortions(std::span<const GeoPoint> places) co
 
 bool Crs::equivalent_to(const Crs& other) const {
   if (name() == other.name()) return true;
-  const ProjContext context;
+  const ProjContext& context = ProjContext::of_thread();
   const ProjObject a = create_crs(context, name()), b = create_crs(context, other.name());
   if (!a || !b) return false;
   const ProjObject a_east_first(proj_normalize_for_visualization(context, a.get()));
@@ -361,7 +361,7 @@ bool Crs::same_vertical_datum(const Crs& other) const {
   const auto mine = vertical(), theirs = other.vertical();
   if (!mine || !theirs) return false;
   if (mine->equivalent_to(*theirs)) return true;
-  const ProjContext context;
+  const ProjContext& context = ProjContext::of_thread();
   const ProjObject a = create_crs(context, mine->name()), b = create_crs(context, theirs->name());
   const ProjObject a_datum(a ? proj_crs_get_datum_forced(context, a.get()) : nullptr);
   const ProjObject b_datum(b ? proj_crs_get_datum_forced(context, b.get()) : nullptr);

@@ -10,7 +10,7 @@
 namespace priormap {
 
 Eigen::Vector2d curvature_radii_m(const Crs& crs, double lat_deg) {
-  const ProjContext context;
+  const ProjContext& context = ProjContext::of_thread();
   const ProjObject object = create_crs(context, crs.name());
   const ProjObject shape(object ? proj_get_ellipsoid(context, object.get()) : nullptr);
   double semi_major_m = 0, inverse_flattening = 0;

@@ -24,6 +24,13 @@ class ProjContext {
   ProjContext(const ProjContext&) = delete;
   ProjContext& operator=(const ProjContext&) = delete;
 
+  /// For what does not outlive a function: each context opens PROJ's database anew, and keeps what it has read there.
+  static const ProjContext& of_thread() {
+    thread_local ProjContext context;
+    context.last_message_.clear();
+    return context;
+  }
+
   operator PJ_CONTEXT*() const { return context_; }
   const std::string& last_message() const { return last_message_; }
 

@@ -122,7 +122,7 @@ std::vector<std::string> better_grids(const ProjContext& context, const ProjList
 }
 
 CoordinateOperation choose_operation(const Crs& source, const Crs& target, const std::optional<LonLatArea>& area) {
-  const ProjContext context;
+  const ProjContext& context = ProjContext::of_thread();
   const ProjObject from = create_crs(context, source.name()), to = create_crs(context, target.name());
   const ProjList possible = find_operations(context, from.get(), to.get(), area, Grids::installed);
   if (count(possible) == 0) refuse(context, find_operations(context, from.get(), to.get(), area, Grids::any), source, target);

@@ -9,7 +9,7 @@
 namespace priormap {
 
 double egm96_undulation_m(double lon_deg, double lat_deg) {
-  const ProjContext context;
+  const ProjContext& context = ProjContext::of_thread();
   const ProjObject geoid(proj_create(context,
                                      "+proj=pipeline +step +proj=unitconvert +xy_in=deg +xy_out=rad "
                                      "+step +proj=vgridshift +grids=us_nga_egm96_15.tif +multiplier=1"));
