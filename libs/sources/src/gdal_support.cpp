@@ -14,8 +14,8 @@
 namespace priormap {
 namespace {
 
-/// GDAL would take 5 % of the machine's memory.
-constexpr std::int64_t gdal_cache_bytes = 64 << 20, most_gdal_cache_bytes = 512 << 20;
+/// GDAL would take 5 % of the machine's memory; and new memory costs more than what is done with it.
+constexpr std::int64_t gdal_cache_bytes = 16 << 20, most_gdal_cache_bytes = 512 << 20;
 
 bool user_sets_cache() { return CPLGetConfigOption("GDAL_CACHEMAX", nullptr) != nullptr; }
 
