@@ -79,7 +79,7 @@ LonLatArea area_of(const std::vector<RasterInput>& inputs, const PriorOptions& o
   static constexpr LonLatArea whole_earth{-180, -90, 180, 90};
   const auto area_of_one = [](const RasterInput& input) { return lon_lat_area(input.facts.bounds, input.crs.crs).value_or(whole_earth); };
   LonLatArea all = area_of_one(inputs.front());
-  for (const RasterInput& input : inputs) all = united(all, area_of_one(input));
+  for (const RasterInput& input : std::span(inputs).subspan(1)) all = united(all, area_of_one(input));
   if (all.width_deg() <= zone_width_deg || options.bbox.empty()) return all;
   return lon_lat_area(options.box(), horizontal_option_crs("--bbox-crs", options.bbox_crs)).value_or(all);
 }

@@ -46,6 +46,7 @@ void TileSpool::add(TileKey key, std::span<const PointRecord> points) {
 
 void TileSpool::recycle(std::vector<PointRecord> points) {
   constexpr std::size_t most_spares = 4, largest = std::size_t(1) << 18;   // 32 MB
+  if (points.capacity() == 0) return;
   points.clear();
   const std::lock_guard lock(spares_mutex_);
   if (spares_.size() < most_spares && points.capacity() <= largest) spares_.push_back(std::move(points));

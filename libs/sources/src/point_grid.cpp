@@ -146,16 +146,15 @@ class WallBuilder {
     const double step = grid_.z[b] - grid_.z[a];
     const double x = lattice_steps(0.5 * (grid_.x[a] + grid_.x[b])), y = lattice_steps(0.5 * (grid_.y[a] + grid_.y[b]));
     if (!area_.contains(x, y)) return;
-    LasPoint wall = common_;
-    wall.x = area_.x_steps(x);
-    wall.y = area_.y_steps(y);
     const Eigen::Vector2f normal = (gradient_ * outward(a, to_b, way)).normalized();
-    wall.set_normal({normal.x(), normal.y(), 0});
     const auto count = static_cast<std::size_t>(std::max(1.0, std::round(std::abs(step) / walls_.rise)));
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t part = step < 0 ? count - 1 - i : i;
+      LasPoint& wall = points_.emplace_back(common_);   // written in place: copied as a whole it would wait for its own narrow stores
+      wall.x = area_.x_steps(x);
+      wall.y = area_.y_steps(y);
       wall.z = static_cast<std::int32_t>(lattice_steps(grid_.z[a] + step * (static_cast<double>(part) + 0.5) / static_cast<double>(count)));
-      points_.push_back(wall);
+      wall.set_normal({normal.x(), normal.y(), 0});
     }
   }
 

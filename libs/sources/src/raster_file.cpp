@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include <priormap/core/also_avx2.hpp>
 #include <priormap/core/error.hpp>
 
 #include "cell_set.hpp"
@@ -196,7 +197,7 @@ void RasterFile::read(const CellWindow& window, std::span<double> heights) const
   for (int row = 0; row < window.height; ++row) to_heights(window.row + row, window.col, heights.subspan(static_cast<std::size_t>(row) * width, width));
 }
 
-void RasterFile::to_heights(int row, int col, std::span<double> values) const {
+PRIORMAP_ALSO_AVX2 void RasterFile::to_heights(int row, int col, std::span<double> values) const {
   const double scale = scale_, offset = offset_, lowest = lowest_, highest = highest_;
   const auto is_possible = [=](double value) {
     const double height = value * scale + offset;

@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <variant>
 #include <vector>
 
+#include <priormap/core/also_avx2.hpp>
 #include <priormap/core/error.hpp>
 #include <priormap/geodesy/image_bounds.hpp>
 #include <priormap/geodesy/interpolated_transformer.hpp>
@@ -75,6 +77,17 @@ std::optional<StepWalls> step_walls(const Crs& target, double cell_size, const s
   const double cell_m = cell_size * target.horizontal_unit_m(), unit_m = std::abs(target.vertical_unit_m());
   if (!least_wall_m || cell_m > coarsest_m) return std::nullopt;
   return StepWalls{std::max(*least_wall_m, cell_m) / unit_m, highest_m / unit_m, std::min(cell_m, greatest_rise_m) / unit_m};
+}
+
+/// The centres of a column's cells from row `south` up.
+PRIORMAP_ALSO_AVX2 void line_of_centres(const Eigen::Affine2d& world_from_cell, int col, int south, std::span<double> x, std::span<double> y) {
+  const auto& m = world_from_cell.matrix();
+  const double x_of_row = m(0, 1), y_of_row = m(1, 1), x_of_col = m(0, 0) * (col + 0.5), y_of_col = m(1, 0) * (col + 0.5), x_0 = m(0, 2), y_0 = m(1, 2);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double row = south - static_cast<int>(i) + 0.5;
+    x[i] = x_0 + (x_of_col + x_of_row * row);
+    y[i] = y_0 + (y_of_col + y_of_row * row);
+  }
 }
 
 /// The raster's own cell centres.
@@ -190,21 +203,17 @@ class CellSampling {
     grid_.across = world_from_cell.linear().col(0);
     grid_.back = world_from_cell.linear().col(1);
     const int south = window.row + window.height + margin - 1;   // the first place of each line
+    const auto length = static_cast<int>(grid_.length);
+    const int first_held = std::clamp(south - held_.row - held_.height + 1, 0, length), last_held = std::clamp(south - held_.row + 1, first_held, length);
     for (std::size_t line = 0; line < grid_.lines; ++line) {
       const int col = window.col - margin + static_cast<int>(line), held_col = col - held_.col;
-      double *x = &grid_.x[line * grid_.length], *y = &grid_.y[line * grid_.length], *z = &grid_.z[line * grid_.length];
-      for (std::size_t i = 0; i < grid_.length; ++i) {
-        const Eigen::Vector2d p = world_from_cell * Eigen::Vector2d(col + 0.5, south - static_cast<int>(i) + 0.5);
-        x[i] = p.x();
-        y[i] = p.y();
-      }
-      const bool is_held = held_col >= 0 && held_col < held_.width;
-      for (std::size_t i = 0; i < grid_.length; ++i) {
-        const int held_row = south - static_cast<int>(i) - held_.row;
-        z[i] = is_held && held_row >= 0 && held_row < held_.height
-                   ? heights_[static_cast<std::size_t>(held_row) * static_cast<std::size_t>(held_.width) + static_cast<std::size_t>(held_col)]
-                   : std::numeric_limits<double>::quiet_NaN();
-      }
+      const std::size_t start = line * grid_.length;
+      line_of_centres(world_from_cell, col, south, std::span(grid_.x).subspan(start, grid_.length), std::span(grid_.y).subspan(start, grid_.length));
+      double* z = &grid_.z[start];
+      std::fill_n(z, grid_.length, std::numeric_limits<double>::quiet_NaN());
+      if (held_col < 0 || held_col >= held_.width) continue;
+      for (int i = first_held; i < last_held; ++i)
+        z[i] = heights_[static_cast<std::size_t>(south - i - held_.row) * static_cast<std::size_t>(held_.width) + static_cast<std::size_t>(held_col)];
     }
   }
 
