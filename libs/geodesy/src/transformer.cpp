@@ -1,7 +1,10 @@
 #include <priormap/geodesy/transformer.hpp>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include <priormap/core/error.hpp>
@@ -143,6 +146,17 @@ CoordinateOperation choose_operation(const Crs& source, const Crs& target, const
   return operation;
 }
 
+/// Each is looked for once: where inputs come in many files, all ask for the same.
+const CoordinateOperation& known_operation(const Crs& source, const Crs& target, const std::optional<LonLatArea>& area) {
+  using Key = std::tuple<std::string, std::string, std::optional<std::array<double, 4>>>;
+  constexpr std::size_t most = 1000;
+  thread_local std::map<Key, CoordinateOperation> known;
+  const Key key{source.name(), target.name(), area ? std::optional(std::array{area->west_deg, area->south_deg, area->east_deg, area->north_deg}) : std::nullopt};
+  if (const auto found = known.find(key); found != known.end()) return found->second;
+  if (known.size() == most) known.clear();
+  return known.emplace(key, choose_operation(source, target, area)).first->second;
+}
+
 CoordinateOperation identity_operation() { return {"identity", no_operation, {}, 0.0, {}}; }
 
 }  // namespace
@@ -194,7 +208,7 @@ Transformer::Transformer(const Crs& source, const Crs& target, const std::option
     throw CrsError((source.is_vertical() ? source : target).human_name() + " is heights alone; name a horizontal system too, as in EPSG:25832+7837");
   const HeightRule rule = height_rule(source, target);
   const Crs from = rule.by_operation ? source : source.horizontal(), to = rule.by_operation ? target : target.horizontal();
-  const CoordinateOperation operation = from.equivalent_to(to) ? identity_operation() : choose_operation(from, to, area);
+  const CoordinateOperation operation = from.equivalent_to(to) ? identity_operation() : known_operation(from, to, area);
   impl_ = std::make_unique<Impl>(source, target, operation, rule);
 }
 
