@@ -38,11 +38,13 @@ struct Confidence {
 };
 
 Confidence estimate_by_prior(DriveGraph& graph, const NearTiles& prior, const ReadScan& read_again, const JointMethodOptions& options, std::optional<double> known_height_m) {
+  constexpr double most_moved_m = 0.1;
   PriorRounds rounds(graph, prior, read_again, options);
   rounds.move_stretches();
   rounds.vote();
-  rounds.estimate(0);
-  if (rounds.move_stretches()) {
+  const double moved_m = rounds.estimate(0);
+  // Voices are those around the poses of the vote: where the poses were poor, they are heard anew.
+  if (rounds.move_stretches() || moved_m > most_moved_m) {
     rounds.vote();
     rounds.estimate(0);
   }

@@ -25,6 +25,7 @@ class DriveGraph {
   std::size_t size() const { return keyframes_.size(); }
   const ScanRecord& record(PoseId k) const { return records_[keyframes_[k].record]; }
   const Eigen::Isometry3d& pose(PoseId k) const { return poses_[k]; }
+  const std::vector<Eigen::Isometry3d>& poses() const { return poses_; }
   bool is_located(PoseId k) const { return record(k).located; }
 
   /// The poses that are located, in order, in groups that lie within `distance_m` of their first one.

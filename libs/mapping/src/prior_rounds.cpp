@@ -60,7 +60,7 @@ void PriorRounds::vote() {
   pieces_.take_likeliest_offsets();
 }
 
-void PriorRounds::estimate(int pass) {
+double PriorRounds::estimate(int pass) {
   constexpr double least_gain = 1e-6, least_gain_before = 1e-4;   // what comes before the last pass is compared anew
   pieces_.clear_matches();
   {
@@ -69,9 +69,13 @@ void PriorRounds::estimate(int pass) {
     compare(comparison, [&](PoseId k, const std::vector<PlaneMatch>& matches) { pieces_.add(k, graph_.pose(k), matches, noise); });
   }   // its tiles make room for the graph
   const bool last = pass + 1 == options_.estimate.passes;
+  const std::vector<Eigen::Isometry3d> before = graph_.poses();
   auto [marginals, weights] = graph_.estimate(pieces_, sigmas_, last ? least_gain : least_gain_before);
   if (!last) sigmas_ = pieces_.estimated_sigmas(stated_, sigmas_, marginals.pieces, weights);
   covariances_ = std::move(marginals.poses);
+  double way_m = 0;
+  for (PoseId k = 0; k < graph_.size(); ++k) way_m += (graph_.pose(k).translation() - before[k].translation()).head<2>().norm();
+  return way_m / static_cast<double>(graph_.size());
 }
 
 std::vector<Matrix6d> PriorRounds::covariances(std::optional<double> known_height_m) const {

@@ -25,8 +25,8 @@ class PriorRounds {
   bool move_stretches();
   /// Finds anew where the walls of each piece lie, by votes (docs/adr/0017).
   void vote();
-  /// Compares, and estimates the poses with the offsets of the pieces; unless it is the last pass, then the sigmas of the offsets as well. @param pass  from 0
-  void estimate(int pass);
+  /// Compares, and estimates the poses with the offsets of the pieces; unless it is the last pass, then the sigmas of the offsets as well. @param pass  from 0   @return how far the poses moved, level, on average [m]
+  double estimate(int pass);
 
   /// Of the poses last estimated, with what they have in common.
   /// @param known_height_m  see `estimate_drive`

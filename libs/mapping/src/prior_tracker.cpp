@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <functional>
 
 #include <priormap/pointcloud/slope.hpp>
 #include <priormap/registration/likely_places.hpp>
@@ -17,7 +16,7 @@ namespace priormap {
 namespace {
 
 // Scores a surfel.
-constexpr double clear_gain = 0.02, least_score = 0.01;
+constexpr double clear_gain = 0.02, least_score = 0.01, doubtful_score = 0.035;
 constexpr double least_of_a_start = -0.01, least_of_any_start = -0.025;   // right ones had -0.0093 and more after some keyframes, wrong ones -0.02 to -0.06
 
 double translation_information(const Matrix6d& information) { return information.bottomRightCorner<3, 3>().trace(); }
@@ -52,22 +51,30 @@ Matrix6d PriorTracker::predicted_covariance(const Eigen::Isometry3d& T_odom_sens
   return A * covariance_ * A.transpose() + Matrix6d((steps * drift.cwiseAbs2()).asDiagonal());
 }
 
+bool PriorTracker::compares() const {
+  constexpr int longest = 20;   // scans
+  return num_heard_ < (farther_.empty() ? options_.start_keyframes : longest);
+}
+
+/// Unless it is there already.
+void PriorTracker::propose(Hypotheses& hypotheses, const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor) {
+  const bool known = std::ranges::any_of(hypotheses, [&](const Hypothesis& h) { return are_near(h.T_map_odom * T_odom_sensor, T_map_sensor, 0.3, 0.01); });
+  if (!known) hypotheses.push_back({T_map_sensor * T_odom_sensor.inverse()});
+}
+
 void PriorTracker::propose_places(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
   constexpr double near_weight = 25;   // 1 m, 2.3 degrees
   const auto targets = map.targets(options_.prior_sigma_m, prior_weights_);
-  const auto propose = [&](const Eigen::Isometry3d& T_map_sensor) {
-    const bool known = std::ranges::any_of(hypotheses_.places, [&](const Hypothesis& h) { return are_near(h.T_map_odom * T_odom_sensor, T_map_sensor, 0.3, 0.01); });
-    if (!known) hypotheses_.places.push_back({T_map_sensor * T_odom_sensor.inverse(), 0});
-  };
+  const auto add = [&](const Eigen::Isometry3d& T_map_sensor) { propose(hypotheses_, T_map_sensor, T_odom_sensor); };
   const Eigen::Isometry3d T_start = T_map_odom_ * T_odom_sensor;
   const Eigen::Isometry3d T_given = registration_.align(scan, targets, T_start, PosePrior{T_start, start_information(T_start)}).T_map_scan;
-  propose(T_given);
+  add(T_given);
   // Of a street that says little along it a loose start may slide by metres; what is near it is another place to be compared.
-  propose(registration_.align(scan, targets, T_start, PosePrior{T_start, near_weight * start_information(T_start)}).T_map_scan);
+  add(registration_.align(scan, targets, T_start, PosePrior{T_start, near_weight * start_information(T_start)}).T_map_scan);
   if (located_) {
-    for (const ScoredResult& other : registration_.search(scan, targets, T_given, options_.search, T_given)) propose(other.match.T_map_scan);
+    for (const ScoredResult& other : registration_.search(scan, targets, T_given, options_.search, T_given)) add(other.match.T_map_scan);
   } else {
-    for (const Eigen::Isometry3d& T : places_all_around(scan, T_odom_sensor, map)) propose(T);
+    for (const Eigen::Isometry3d& T : places_all_around(scan, T_odom_sensor, map)) add(T);
   }
 }
 
@@ -87,22 +94,26 @@ std::vector<Eigen::Isometry3d> PriorTracker::places_all_around(const SurfelCloud
 void PriorTracker::hear(Hypotheses& hypotheses, const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
   const auto targets = map.targets(options_.prior_sigma_m, prior_weights_), to_compare = map.targets(options_.prior_sigma_m, PriorSurfels::unweighted);
   const Matrix6d information = (Vector6d() << Eigen::Vector3d::Constant(1e4), Eigen::Vector3d::Constant(10)).finished().asDiagonal();
-  for (Hypothesis& h : hypotheses.places) {
+  for (Hypothesis& h : hypotheses) {
     const Eigen::Isometry3d T = h.T_map_odom * T_odom_sensor;
     const Eigen::Isometry3d T_aligned = registration_.align(scan, targets, T, PosePrior{T, information}).T_map_scan;
-    h.score += registration_.score(scan, to_compare, T_aligned, options_.search.sigma_m);
+    h.sum += registration_.score(scan, to_compare, T_aligned, options_.search.sigma_m);
+    h.num_surfels += static_cast<double>(scan.size());
+    ++h.num_heard;
     h.T_map_odom = T_aligned * T_odom_sensor.inverse();
   }
-  hypotheses.num_surfels += static_cast<double>(scan.size());
 }
 
-const PriorTracker::Hypothesis& PriorTracker::Hypotheses::best() const { return *std::ranges::max_element(places, {}, &Hypothesis::score); }
+const PriorTracker::Hypothesis& PriorTracker::best_of(const Hypotheses& hypotheses) { return *std::ranges::max_element(hypotheses, {}, &Hypothesis::score); }
 
-double PriorTracker::Hypotheses::best_score_elsewhere(const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor) const {
+double PriorTracker::best_score_elsewhere(const Hypotheses& hypotheses, const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor) {
   constexpr double near_m = 3, near_rad = 0.1;
   std::optional<double> best;
-  for (const Hypothesis& h : places)
-    if (!are_near(h.T_map_odom * T_odom_sensor, T_map_sensor, near_m, near_rad)) best = std::max(best.value_or(score(h)), score(h));
+  for (const Hypothesis& h : hypotheses) {
+    Eigen::Isometry3d T = h.T_map_odom * T_odom_sensor;
+    T.translation().z() = T_map_sensor.translation().z();   // where no ground is known, no height is
+    if (!are_near(T, T_map_sensor, near_m, near_rad)) best = std::max(best.value_or(h.score()), h.score());
+  }
   return best.value_or(std::numeric_limits<double>::infinity());
 }
 
@@ -110,22 +121,23 @@ double PriorTracker::Hypotheses::best_score_elsewhere(const Eigen::Isometry3d& T
 /// in a good prior 0.12 where it is and 0.02 at a wrong place, in a poor one 0.01 where it is.
 void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
   constexpr double usual_loss = 0.04;   // a surfel
-  if (hypotheses_.places.empty()) propose_places(scan, T_odom_sensor, map);
+  if (hypotheses_.empty()) propose_places(scan, T_odom_sensor, map);
   hear(hypotheses_, scan, T_odom_sensor, map);
   hear(farther_, scan, T_odom_sensor, map);
-  const Hypothesis &given = hypotheses_.places.front(), &best = hypotheses_.best();
-  const Hypothesis& chosen = best.score - given.score > clear_gain * hypotheses_.num_surfels ? best : given;
+  const Hypothesis &given = hypotheses_.front(), &best = best_of(hypotheses_);
+  const Hypothesis& chosen = best.score() - given.score() > clear_gain ? best : given;
   T_map_odom_ = chosen.T_map_odom;
-  double score = hypotheses_.score(chosen);
+  double score = chosen.score();
   const int enough = std::min(4, options_.start_keyframes);
   const bool fits = score > std::max(least_score, usual_score_ - usual_loss);
-  if (++num_heard_ >= enough) located_ = located_ || (fits && score - hypotheses_.best_score_elsewhere(T_map_odom_ * T_odom_sensor, T_odom_sensor) > clear_gain);
-  if (num_heard_ % enough == 0 && takes_farther_place(score, T_odom_sensor)) {
-    score = hypotheses_.score(hypotheses_.places.front());
-  } else if (num_heard_ % enough == 0 && num_heard_ + enough <= options_.start_keyframes && !lost_once_ && !started_elsewhere_ && score < least_score) {
-    look_farther(scan, T_odom_sensor, map);
+  if (++num_heard_ >= enough) located_ = located_ || (fits && score - best_score_elsewhere(hypotheses_, T_map_odom_ * T_odom_sensor, T_odom_sensor) > clear_gain);
+  if (num_heard_ % enough == 0) {
+    if (takes_farther_place(score, T_odom_sensor)) score = hypotheses_.front().score();
+    drop_farther_places(score);
+    const bool may_be_elsewhere = !lost_once_ && !started_elsewhere_ && score < (num_heard_ == enough ? doubtful_score : least_score);
+    if (may_be_elsewhere && num_heard_ + enough <= options_.start_keyframes) look_farther(scan, T_odom_sensor, map);
   }
-  const bool is_through = num_heard_ >= options_.start_keyframes;
+  const bool is_through = !compares();
   start_in_doubt_ = !lost_once_ && score < (is_through ? least_of_any_start : least_of_a_start);
   const bool in_vain = num_heard_ >= enough && !located_ && !fits;
   if (!is_through && !in_vain) return;
@@ -140,29 +152,38 @@ void PriorTracker::compare_hypotheses(const SurfelCloud& scan, const Eigen::Isom
   }
 }
 
-/// Where the start that the user gave does not fit at all, it may be wrong by more than it should be.
+/// Where the start that the user gave does not fit well, it may be wrong by more than it should be.
 void PriorTracker::look_farther(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map) {
-  farther_ = {};
-  for (const Eigen::Isometry3d& T : places_all_around(scan, T_odom_sensor, map)) farther_.places.push_back({T * T_odom_sensor.inverse(), 0});
+  for (const Eigen::Isometry3d& T : places_all_around(scan, T_odom_sensor, map)) propose(farther_, T, T_odom_sensor);
 }
 
 /// But the user is believed unless one place is right beyond doubt: then it takes the place of those near the start.
 bool PriorTracker::takes_farther_place(double score_near_start, const Eigen::Isometry3d& T_odom_sensor) {
-  constexpr double beyond_doubt = 0.03;   // a surfel
-  if (farther_.places.empty()) return false;
-  const Hypothesis best = farther_.best();
-  const double elsewhere = std::max(score_near_start, farther_.best_score_elsewhere(best.T_map_odom * T_odom_sensor, T_odom_sensor));
-  if (farther_.score(best) < least_score || farther_.score(best) - elsewhere < beyond_doubt) return false;
-  hypotheses_ = {{best}, farther_.num_surfels};
+  const auto is_beyond_doubt = [&](const Hypothesis& h) {
+    const double ahead = h.score() - std::max(score_near_start, best_score_elsewhere(farther_, h.T_map_odom * T_odom_sensor, T_odom_sensor));
+    return h.score() >= least_score && ahead >= (h.num_heard < 8 ? 0.03 : h.num_heard < 12 ? 0.02 : 0.015);   // wrong ones were so by 0.011, 0.017 and 0.012
+  };
+  std::ranges::stable_sort(farther_, std::greater<>{}, &Hypothesis::score);
+  const auto place = std::ranges::find_if(farther_, is_beyond_doubt);
+  if (place == farther_.end()) return false;
+  hypotheses_ = {*place};
   farther_ = {};
-  T_map_odom_ = best.T_map_odom;
+  T_map_odom_ = hypotheses_.front().T_map_odom;
   T_odom_last_.reset();
   return started_elsewhere_ = true;
 }
 
+/// What fits worse than the start, or far worse than the best, is looked at no more.
+void PriorTracker::drop_farther_places(double score_near_start) {
+  constexpr double far_behind = 0.03;
+  if (farther_.empty()) return;
+  const double least = std::max(score_near_start, best_of(farther_).score() - far_behind);
+  std::erase_if(farther_, [&](const Hypothesis& h) { return h.score() < least; });
+}
+
 void PriorTracker::begin_anew(const LostPlace& lost) {
   constexpr double step_m = 3;
-  if (!hypotheses_.places.empty() && located_) usual_score_ = hypotheses_.score(hypotheses_.places.front());   // so far
+  if (!hypotheses_.empty() && located_) usual_score_ = hypotheses_.front().score();   // so far
   T_map_odom_lost_ = T_map_odom_;
   lost_ = lost;
   lost_once_ = true;
@@ -182,7 +203,7 @@ void PriorTracker::look_anew() {
 
 void PriorTracker::exchange(StateArchive& archive) {
   if (prior_) archive(*prior_);
-  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_.places, hypotheses_.num_surfels, farther_.places, farther_.num_surfels, T_map_odom_lost_, lost_, lost_step_m_, lost_once_, start_in_doubt_, located_, started_elsewhere_, usual_score_, num_heard_);
+  archive(T_map_odom_, T_odom_last_, p_odom_, way_since_asked_m_, heard_last_, covariance_, prior_weights_, hypotheses_, farther_, T_map_odom_lost_, lost_, lost_step_m_, lost_once_, start_in_doubt_, located_, started_elsewhere_, usual_score_, num_heard_);
 }
 
 void PriorTracker::go_on(const Eigen::Isometry3d& T_odom_sensor) {
@@ -192,7 +213,7 @@ void PriorTracker::go_on(const Eigen::Isometry3d& T_odom_sensor) {
 
 bool PriorTracker::asks() const {
   if (!prior_ || !T_odom_last_) return prior_.has_value();
-  const bool is_held = num_heard_ >= options_.start_keyframes && heard_last_;
+  const bool is_held = !compares() && heard_last_;
   return way_since_asked_m_ >= (is_held ? options_.keyframe_m : located_ ? options_.search_step_m : lost_step_m_);
 }
 
@@ -218,13 +239,13 @@ std::optional<PriorMatch> PriorTracker::follow(const SurfelCloud& whole_scan, co
   const Eigen::Isometry3d guess = T_map_odom_ * T_odom_sensor;
   // Once the drive has been found in the prior, some thousand surfels hold it there as well as all.
   constexpr std::size_t most_surfels = 3000;
-  const std::size_t stride = num_heard_ < options_.start_keyframes ? 1 : (whole_scan.size() + most_surfels - 1) / most_surfels;
+  const std::size_t stride = compares() ? 1 : (whole_scan.size() + most_surfels - 1) / most_surfels;
   const SurfelCloud scan = without_roofs(every(whole_scan, stride), guess.linear(), scan_voxel_m_);
   if (scan.empty()) return std::nullopt;
-  const bool looks_all_around = !located_ || !farther_.places.empty();
+  const bool looks_all_around = !located_ || !farther_.empty();
   const PriorSurfels& map = prior_->around(looks_all_around ? centre_of_search() : guess.translation());   // no place is to be preferred
   const auto targets = map.targets(options_.prior_sigma_m, prior_weights_);
-  if (num_heard_ < options_.start_keyframes) compare_hypotheses(scan, T_odom_sensor, map);
+  if (compares()) compare_hypotheses(scan, T_odom_sensor, map);
   const Eigen::Isometry3d T_pred = T_map_odom_ * T_odom_sensor;
   JointResult match;
   if (T_odom_last_) {

@@ -44,18 +44,19 @@ class PriorTracker {
   void exchange(StateArchive& archive);
 
  private:
+  /// Where the drive may be, and how well the scans heard since then fit there.
   struct Hypothesis {
     Eigen::Isometry3d T_map_odom;
-    double score;   // sum over all surfels heard
+    double sum = 0, num_surfels = 0;
+    int num_heard = 0;   // scans
+    double score() const { return sum / num_surfels; }   // a surfel
   };
-  struct Hypotheses {
-    std::vector<Hypothesis> places;
-    double num_surfels = 0;   // heard
-    double score(const Hypothesis& h) const { return h.score / num_surfels; }   // a surfel
-    const Hypothesis& best() const;
-    /// Of those that are another place than that.
-    double best_score_elsewhere(const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor) const;
-  };
+  using Hypotheses = std::vector<Hypothesis>;
+  static const Hypothesis& best_of(const Hypotheses& hypotheses);
+  /// Of those that are another place than that.
+  static double best_score_elsewhere(const Hypotheses& hypotheses, const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor);
+  static void propose(Hypotheses& hypotheses, const Eigen::Isometry3d& T_map_sensor, const Eigen::Isometry3d& T_odom_sensor);
+  bool compares() const;
   void look_anew();
   void propose_places(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
   void compare_hypotheses(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
@@ -63,6 +64,7 @@ class PriorTracker {
   Eigen::Vector3d centre_of_search() const { return T_map_odom_lost_ * lost_.p_odom; }
   std::vector<Eigen::Isometry3d> places_all_around(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
   void look_farther(const SurfelCloud& scan, const Eigen::Isometry3d& T_odom_sensor, const PriorSurfels& map);
+  void drop_farther_places(double score_near_start);
   bool takes_farther_place(double score_near_start, const Eigen::Isometry3d& T_odom_sensor);
 
   PriorMatch word_of(const JointResult& match, std::size_t num_surfels) const;
