@@ -122,5 +122,57 @@ TEST(PriorTracker, WhereTheFirstScanSlidesToWhatIsNotThereThePlaceNearTheStartIs
   EXPECT_NEAR(tracker.T_map_odom().translation().x(), 0, 0.1);
 }
 
+/// Houses of odd widths and depths along a street: corners of their fronts, and the way deep into the gaps beside them.
+struct House {
+  float x, y, width_m, depth_m;
+};
+
+std::vector<House> houses_along_street() {
+  std::vector<House> houses;
+  int i = 0;
+  for (float x = -40; x < 160; ++i) {
+    const float width_m = static_cast<float>(7 + i * 5 % 6);
+    for (const float side : {-1.0f, 1.0f}) houses.push_back({x + (side > 0 ? 3.0f : 0.0f), side * static_cast<float>(6 + (i * 7 + (side > 0 ? 2 : 0)) % 5), width_m, side * static_cast<float>(6 + i * 3 % 4)});
+    x += width_m + static_cast<float>(4 + i * 3 % 5);
+  }
+  return houses;
+}
+
+void front_and_sides(const House& house, const Eigen::Vector2f& shift_m, auto&& take) {
+  const auto column = [&](float x, float y, const Eigen::Vector3f& normal) {
+    for (const float z : {0.5f, 1.5f, 2.5f, 3.5f}) take(Eigen::Vector3f(x + shift_m.x(), y + shift_m.y(), z), normal);
+  };
+  for (float x = 0.5f; x < house.width_m; x += 1) column(house.x + x, house.y, Eigen::Vector3f::UnitY());
+  for (float y = 0.5f; y < std::abs(house.depth_m); y += 1)
+    for (const float x : {0.0f, house.width_m}) column(house.x + x, house.y + std::copysign(y, house.depth_m), Eigen::Vector3f::UnitX());
+}
+
+/// A start in another street, some of whose houses are like those of the right one: over walls alone, as of outlines without a terrain, that fits somewhat. The right street, 36 m off, fits far better.
+TEST(PriorTracker, AStartThatFitsSomewhatIsLeftForAPlaceThatFitsFarBetter) {
+  constexpr float sensor_z = 1.5f, step_m = 5;
+  constexpr int num_scans = 9;
+  const Eigen::Vector2f to_like_street_m(10, -35);
+  const std::vector<House> houses = houses_along_street();
+  Scene scene;
+  const auto know = [&](const Eigen::Vector3f& p, const Eigen::Vector3f& normal) { scene.know(p, normal); };
+  for (std::size_t i = 0; i < houses.size(); ++i) {
+    front_and_sides(houses[i], Eigen::Vector2f::Zero(), know);
+    if (i % 5 == 0) front_and_sides(houses[i], to_like_street_m, know);
+  }
+  const test::TiledPoints tiles(scene.prior, 50);
+  PriorTracker tracker(TrackingOptions{}, 1.0, NearTiles(tiles, MapFrame::local(), 150), test::pose(static_cast<double>(to_like_street_m.x()), static_cast<double>(to_like_street_m.y()), sensor_z, 0));
+  for (int k = 0; k < num_scans; ++k) {
+    const Eigen::Vector3f p_sensor(step_m * static_cast<float>(k), 0, sensor_z);
+    scene.scan = {};
+    for (const House& house : houses)
+      front_and_sides(house, Eigen::Vector2f::Zero(), [&](const Eigen::Vector3f& p, const Eigen::Vector3f& normal) {
+        if ((p - p_sensor).norm() < 40) scene.see(p - p_sensor, normal);
+      });
+    tracker.follow(scene.scan, test::pose(static_cast<double>(p_sensor.x()), 0, 0, 0));
+  }
+  EXPECT_TRUE(tracker.started_elsewhere());
+  EXPECT_NEAR(tracker.T_map_odom().translation().head<2>().norm(), 0, 0.1);
+}
+
 }  // namespace
 }  // namespace priormap
