@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <mutex>
+#include <utility>
 
 #include <priormap/core/error.hpp>
 
@@ -15,7 +16,13 @@ namespace priormap {
 namespace {
 
 /// GDAL would take 5 % of the machine's memory; and new memory costs more than what is done with it.
-constexpr std::int64_t gdal_cache_bytes = 16 << 20, most_gdal_cache_bytes = 512 << 20;
+constexpr std::int64_t gdal_cache_bytes = 16 << 20, most_for_several_bytes = 64 << 20, most_gdal_cache_bytes = 512 << 20;
+
+/// Of the rasters that are open: they share one cache.
+struct AllNeeds {
+  std::mutex mutex;
+  std::int64_t bytes = 0;
+} all_needs;
 
 bool user_sets_cache() { return CPLGetConfigOption("GDAL_CACHEMAX", nullptr) != nullptr; }
 
@@ -29,9 +36,18 @@ void register_gdal() {
   });
 }
 
-void hold_in_cache(std::int64_t bytes) {
-  bytes = std::min(bytes, most_gdal_cache_bytes);
-  if (bytes > GDALGetCacheMax64() && !user_sets_cache()) GDALSetCacheMax64(bytes);
+CacheNeed::~CacheNeed() {
+  const std::lock_guard lock(all_needs.mutex);
+  all_needs.bytes -= bytes_;
+}
+
+void CacheNeed::grow_to(std::int64_t bytes) {
+  if (bytes <= bytes_) return;
+  const std::lock_guard lock(all_needs.mutex);
+  all_needs.bytes += bytes - std::exchange(bytes_, bytes);
+  // Not all of a mosaic's tiles are read side by side.
+  const std::int64_t wanted = std::min(std::max(bytes, std::min(all_needs.bytes, most_for_several_bytes)), most_gdal_cache_bytes);
+  if (wanted > GDALGetCacheMax64() && !user_sets_cache()) GDALSetCacheMax64(wanted);
 }
 
 GDALDataset* open_gdal(const std::filesystem::path& file, unsigned int flags, const std::string& what) {

@@ -15,8 +15,20 @@ namespace priormap {
 /// All drivers, once; a block cache of bounded size.
 void register_gdal();
 
-/// Lets the block cache grow to this size, within bounds. The user's GDAL_CACHEMAX has the last word.
-void hold_in_cache(std::int64_t bytes);
+/// What the block cache is to hold of one raster, as long as this lives: it grows, within bounds, so that rasters that are read in turn do not drive out each other's
+/// blocks, which would be decoded again. The user's GDAL_CACHEMAX has the last word.
+class CacheNeed {
+ public:
+  CacheNeed() = default;
+  ~CacheNeed();
+  CacheNeed(const CacheNeed&) = delete;
+  CacheNeed& operator=(const CacheNeed&) = delete;
+  /// For one thread at a time.
+  void grow_to(std::int64_t bytes);
+
+ private:
+  std::int64_t bytes_ = 0;
+};
 
 /// GDAL prints nothing in this thread while this lives.
 class QuietGdal {

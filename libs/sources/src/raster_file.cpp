@@ -122,14 +122,15 @@ struct RasterFile::Open {
   std::shared_ptr<GDALDataset> dataset;
   GDALRasterBand* band = nullptr;
   bool has_mask = false;
-  std::int64_t bytes_a_row = 0;   ///< of the whole raster, decoded
+  std::int64_t bytes_a_row = 0;   ///< of the whole raster, decoded, with all that is decoded with it
   int block_height = 1;
+  CacheNeed cache_need;
   std::mutex mutex;
   ImpossibleCells impossible;
 
   void read(const std::filesystem::path& file, const CellWindow& window, std::span<double> heights) {
     const std::lock_guard lock(mutex);
-    hold_in_cache(bytes_a_row * (window.height + 2 * block_height));
+    cache_need.grow_to(bytes_a_row * (window.height + 2 * block_height));
     if (!read_band(*band, window, heights.data(), GDT_Float64)) throw FormatError(file, "has cells that cannot be read: " + QuietGdal::message());
     if (!has_mask) return;
     std::vector<std::uint8_t> mask(heights.size());
@@ -166,8 +167,10 @@ RasterFile::RasterFile(const std::filesystem::path& file, const std::optional<Cr
   }
   int block_width = 0;
   band.GetBlockSize(&block_width, &open_->block_height);
-  open_->bytes_a_row = std::int64_t(facts_.width) * GDALGetDataTypeSizeBytes(band.GetRasterDataType());
   open_->has_mask = (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
+  const char* interleaving = dataset.GetMetadataItem("INTERLEAVE", "IMAGE_STRUCTURE");
+  const int bands_a_block = interleaving && EQUAL(interleaving, "PIXEL") ? dataset.GetRasterCount() : 1;   // decoding one decodes all
+  open_->bytes_a_row = std::int64_t(facts_.width) * (bands_a_block * GDALGetDataTypeSizeBytes(band.GetRasterDataType()) + (open_->has_mask ? 1 : 0));
 
   int found = 0;
   const double no_data = band.GetNoDataValue(&found);
