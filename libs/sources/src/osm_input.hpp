@@ -1,7 +1,8 @@
 #pragma once
 #include <filesystem>
 #include <osmium/io/file.hpp>
-// All that osmium/io/any_input.hpp names but bzip2, which OsmInput brings.
+// All that osmium/io/any_input.hpp names but bzip2, which OsmInput brings: where any file of a program includes that, osmium/io/any_compression.hpp or
+// osmium/io/bzip2_compression.hpp, libosmium's own is registered first, and OsmInput refuses to work.
 #include <osmium/io/gzip_compression.hpp>
 #include <osmium/io/o5m_input.hpp>
 #include <osmium/io/opl_input.hpp>
