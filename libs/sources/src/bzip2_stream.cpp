@@ -26,6 +26,7 @@ std::size_t Bzip2Stream::read(std::span<char> buffer) {
     const bool starved = state_.avail_in == 0;
     const unsigned room = state_.avail_out;
     const int result = BZ2_bzDecompress(&state_);
+    if (result == BZ_MEM_ERROR) throw std::bad_alloc();   // it takes what the first bytes of the stream state
     if (result == BZ_STREAM_END) end_stream();
     else if (result != BZ_OK) throw Bzip2Fault("the bzip2 stream is damaged");
     else if (starved && state_.avail_out == room) throw Bzip2Fault("the bzip2 stream is cut short");

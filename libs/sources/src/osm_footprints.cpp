@@ -4,6 +4,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <new>
 #include <osmium/osm.hpp>
 #include <osmium/thread/pool.hpp>
 #include <span>
@@ -143,6 +144,8 @@ void for_each_object(OsmFile& file, osmium::osm_entity_bits::type entities, osmi
   } catch (const std::system_error& error) {
     throw IoError(file.path, error.code().message());
   } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {  // osmium's io_error and what its format readers throw
     throw FormatError(file.path, std::string("cannot be read as OSM data, perhaps it is cut short (") + error.what() + ")");

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <new>
 #include <optional>
 
 #include <priormap/core/error.hpp>
@@ -84,6 +85,8 @@ std::vector<OsmStreet> read_osm_streets(const std::filesystem::path& file) {
     osmium::io::Reader ways(input.file(), osmium::osm_entity_bits::way);
     osmium::apply(ways, locations_of_ways, collector);
     ways.close();
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& error) {
     throw FormatError(file, std::string("is not a readable OSM file: ") + error.what());
   }
