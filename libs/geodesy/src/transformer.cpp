@@ -1,5 +1,6 @@
 #include <priormap/geodesy/transformer.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -147,11 +148,16 @@ CoordinateOperation choose_operation(const Crs& source, const Crs& target, const
 }
 
 /// Each is looked for once: where inputs come in many files, all ask for the same.
-const CoordinateOperation& known_operation(const Crs& source, const Crs& target, const std::optional<LonLatArea>& area) {
+CoordinateOperation known_operation(const Crs& source, const Crs& target, const std::optional<LonLatArea>& area) {
   using Key = std::tuple<std::string, std::string, std::optional<std::array<double, 4>>>;
   constexpr std::size_t most = 1000;
   thread_local std::map<Key, CoordinateOperation> known;
-  const Key key{source.name(), target.name(), area ? std::optional(std::array{area->west_deg, area->south_deg, area->east_deg, area->north_deg}) : std::nullopt};
+  Key key{source.name(), target.name(), std::nullopt};
+  if (area) {
+    const std::array bounds{area->west_deg, area->south_deg, area->east_deg, area->north_deg};
+    if (!std::ranges::all_of(bounds, [](double deg) { return std::isfinite(deg); })) return choose_operation(source, target, area);   // NaN has no place in an order
+    std::get<2>(key) = bounds;
+  }
   if (const auto found = known.find(key); found != known.end()) return found->second;
   if (known.size() == most) known.clear();
   return known.emplace(key, choose_operation(source, target, area)).first->second;

@@ -4,8 +4,13 @@
 
 #include <GeographicLib/TransverseMercator.hpp>
 #include <GeographicLib/UTMUPS.hpp>
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <set>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <priormap/core/error.hpp>
 #include <priormap/geodesy/undulation.hpp>
@@ -13,6 +18,7 @@
 using Eigen::Vector3d;
 using priormap::Crs;
 using priormap::CrsError;
+using priormap::LonLatArea;
 using priormap::Transformer;
 
 namespace {
@@ -94,6 +100,24 @@ TEST(TransformerTest, NullTransformationOfEtrs89IsNotBallpark) {
   const Transformer t = transformer("EPSG:4326", "EPSG:25832");
   EXPECT_NE(t.operation().name.find("ETRS89 to WGS 84 (1)"), std::string::npos) << t.operation().name;
   EXPECT_EQ(t.operation().accuracy_m, 1.0);
+}
+
+TEST(TransformerTest, TheAreaChoosesTheOperationWhateverWasAskedBefore) {
+  const std::vector<std::optional<LonLatArea>> areas = {LonLatArea{10, 48, 10.1, 48.1}, LonLatArea{-8, 38, -7.9, 38.1}, LonLatArea{5, 60, 5.1, 60.1}, std::nullopt};
+  const auto names = [](const std::vector<std::optional<LonLatArea>>& asked) {
+    std::vector<std::string> found;
+    std::thread([&] {   // each thread begins with nothing known
+      for (int round = 0; round < 2; ++round)
+        for (const std::optional<LonLatArea>& area : asked) found.push_back(Transformer(Crs::parse("EPSG:4230"), Crs::parse("EPSG:4326"), area).operation().name);
+    }).join();
+    return found;
+  };
+  const std::vector<std::string> forth = names(areas);
+  EXPECT_EQ(std::set<std::string>(forth.begin(), forth.end()).size(), areas.size());
+  EXPECT_TRUE(std::equal(forth.begin(), forth.begin() + 4, forth.begin() + 4));
+  std::vector<std::string> back = names({areas.rbegin(), areas.rend()});
+  std::ranges::reverse(back);
+  EXPECT_EQ(back, forth);
 }
 
 TEST(TransformerTest, UnknownDatumHasNoOperation) {
