@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -78,7 +79,7 @@ Eigen::Matrix3d twice_moment_of(const Polygon3& polygon, const Eigen::Vector3d& 
 
 /// Sums over the faces of a solid.
 struct Solid {
-  void add(const ModelFace& face, const Eigen::Vector3d& anchor) {
+  void add(const ModelFace& face) {
     const Eigen::Vector3d twice = newell_normal(face.polygon), middle = middle_of(face.polygon.exterior) - anchor;
     twice_vector_area += twice;
     twice_area += twice.norm();
@@ -86,13 +87,24 @@ struct Solid {
     twice_distances += twice.norm() * middle.norm();
     six_volumes += twice.dot(middle);
   }
-  Solid& operator+=(const Solid& other) {
+  Solid& operator+=(Solid other) {
+    const Eigen::Vector3d middle = (twice_area * anchor + other.twice_area * other.anchor) / (twice_area + other.twice_area);
+    measure_from(middle);
+    other.measure_from(middle);
     twice_vector_area += other.twice_vector_area;
     twice_area += other.twice_area;
     twice_moment += other.twice_moment;
     twice_distances += other.twice_distances;
     six_volumes += other.six_volumes;
     return *this;
+  }
+  /// The distances become what they are at most.
+  void measure_from(const Eigen::Vector3d& place) {
+    const Eigen::Vector3d shift = anchor - place;
+    twice_moment += shift * twice_vector_area.transpose();
+    twice_distances += twice_area * shift.norm();
+    six_volumes += twice_vector_area.dot(shift);
+    anchor = place;
   }
   /// The vectors of area cancel where faces close a solid, and where what they leave open on one side they leave open on the other.
   bool vectors_cancel() const { return twice_vector_area.norm() < rounding * twice_area; }
@@ -109,6 +121,7 @@ struct Solid {
   }
 
   static constexpr double rounding = 1e-3;
+  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();   ///< in the middle of the solid: what counts as rounding grows with the distances from it
   Eigen::Vector3d twice_vector_area = Eigen::Vector3d::Zero();
   Eigen::Matrix3d twice_moment = Eigen::Matrix3d::Zero();
   double twice_area = 0, twice_distances = 0, six_volumes = 0;
@@ -116,7 +129,12 @@ struct Solid {
 
 std::map<SolidKey, Solid> solids_of(const std::vector<ModelFace>& faces) {
   std::map<SolidKey, Solid> solids;
-  for (const ModelFace& face : faces) solids[face.solid].add(face, faces.front().polygon.exterior.front());
+  std::map<SolidKey, double> num_faces;
+  for (const ModelFace& face : faces) {
+    Eigen::Vector3d& middle = solids[face.solid].anchor;
+    middle += (middle_of(face.polygon.exterior) - middle) / ++num_faces[face.solid];
+  }
+  for (const ModelFace& face : faces) solids[face.solid].add(face);
   return solids;
 }
 
@@ -144,7 +162,7 @@ void turn_shared_faces(std::vector<ModelFace>& faces, const std::vector<bool>& s
   }
 }
 
-/// Some solids leave out faces that their part states beside them, such as windows: what closes the one open solid of a part belongs to it.
+/// Some solids leave out faces that their part states beside them, such as windows: what closes one open solid of a part, and no other, belongs to it.
 void close_solids(std::vector<ModelFace>& faces) {
   std::map<SolidKey, Solid> solids = solids_of(faces);
   std::map<int, std::vector<SolidKey>> open_of_part;
@@ -152,12 +170,16 @@ void close_solids(std::vector<ModelFace>& faces) {
     if (key.solid != 0 && !solid.is_closed()) open_of_part[key.part].push_back(key);
   for (const auto& [part, open] : open_of_part) {
     const SolidKey beside{part, 0};
-    if (open.size() != 1 || !solids.contains(beside)) continue;
-    Solid both = solids[open.front()];
-    both += solids[beside];
-    if (!both.is_closed()) continue;
+    if (!solids.contains(beside)) continue;
+    std::vector<SolidKey> closed_by_it;
+    std::ranges::copy_if(open, std::back_inserter(closed_by_it), [&](const SolidKey& key) {
+      Solid both = solids[key];
+      both += solids[beside];
+      return both.is_closed();
+    });
+    if (closed_by_it.size() != 1) continue;
     for (ModelFace& face : faces)
-      if (face.solid == beside) face.solid = open.front();
+      if (face.solid == beside) face.solid = closed_by_it.front();
   }
 }
 

@@ -80,6 +80,20 @@ TEST(ModelFaces, ATubeThatIsOpenAtBothEndsEnclosesNothing) {
   EXPECT_EQ(closed_solids(model_faces(model, diagnostics)), (std::set<SolidKey>{{0, 1}, {0, 2}}));
 }
 
+TEST(ModelFaces, AnOpenTubeLeavesAHouseOfItsPartWhatIsStatedBesideThem) {
+  Diagnostics diagnostics;
+  BuildingModel model = passage();
+  constexpr std::size_t faces_of_tube = number_of_faces - 2;
+  model.polygons[faces_of_tube + east].solid = 0;
+  EXPECT_EQ(closed_solids(model_faces(model, diagnostics)), (std::set<SolidKey>{{0, 2}}));
+}
+
+TEST(ModelFaces, WhetherASolidIsClosedDoesNotDependOnHowFarItIsFromAnother) {
+  Diagnostics diagnostics;
+  const BuildingModel model = model_of(box({-2000, 0, 0}, {-1990, 4, 3}, 3), passage().polygons);
+  EXPECT_EQ(closed_solids(model_faces(model, diagnostics)), (std::set<SolidKey>{{0, 2}, {0, 3}}));
+}
+
 TEST(ModelFaces, ASolidIsClosedThoughItsFacesMeetInOtherCorners) {
   // The eastern wall in two, the north with a window in the wall's hole.
   BuildingModel model = model_of(box({0, 0, 0}, {10, 10, 5}, 1), {});
