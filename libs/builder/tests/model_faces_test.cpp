@@ -192,6 +192,38 @@ TEST(FaceIndex, WallsThatFaceEachOtherAcrossAJointAreOne) {
   EXPECT_EQ(left_across(0.12, 0), 9u);
   EXPECT_EQ(left_across(-0.1, 0.2), 0u);   // 1 degree
   EXPECT_GT(left_across(0.06, 1.2), 7u);   // 7 degrees
+  EXPECT_EQ(left_across(-0.04, 1.2), 9u);   // as wide as a joint where the first spot is
+}
+
+TEST(FaceIndex, ARoofIsSeenThroughTheGapBelowWhatHangsOverIt) {
+  Diagnostics diagnostics;
+  const std::vector<ModelFace> faces = model_faces(model_of(box({0, 0, 0}, {10, 10, 5}, 1), {}), diagnostics);
+  for (const double gap_m : {0.03, 0.08}) {
+    FaceIndex index;
+    index.add(0, faces);
+    index.add(1, model_faces(model_of(box({0, 0, 5 + gap_m}, {10, 10, 8}, 1), {}), diagnostics));
+    index.finish();
+    EXPECT_EQ(left_of(index, faces[1]), gap_m < 0.05 ? 0u : 9u);
+  }
+}
+
+TEST(FaceIndex, SolidsThatHaveAFaceInCommonHaveNoJointBetweenThem) {
+  for (const bool has_common_face : {false, true}) {
+    BuildingModel model = model_of(box({0, 0, 0}, {10, 10, 5}, 1), box({10.08, 0, 0}, {20, 10, 5}, 2));
+    if (has_common_face) {
+      ModelPolygon upper = polygon({{10, 0, 6}, {10, 10, 6}, {10, 10, 8}, {10, 0, 8}}, 1);
+      model.polygons.push_back(upper);
+      upper.solid = 2;
+      upper.repeated = true;
+      model.polygons.push_back(upper);
+    }
+    Diagnostics diagnostics;
+    const std::vector<ModelFace> faces = model_faces(model, diagnostics);
+    FaceIndex index;
+    index.add(0, faces);
+    index.finish();
+    EXPECT_EQ(left_of(index, faces[east]), has_common_face ? 9u : 0u);
+  }
 }
 
 TEST(FaceIndex, WhatStandsInAPassageIsSeen) {
