@@ -154,7 +154,8 @@ class References {
       if (context.thematic && !target.context.thematic && !said_[index].surface_class) said_[index].surface_class = context.surface_class;
       if (context.solid == 0 || context.solid == target.context.solid) return;
       SolidSide& side = said_[index].solids[context.solid];
-      (flip ? side.turned : side.as_stated) = true;
+      const bool is_turned = (flip != own_flip) != target.context.flip;   // `put` turns it as it is stated
+      (is_turned ? side.turned : side.as_stated) = true;
       return;
     }
     const int solid = context.solid != 0 ? context.solid : &home == &geometry_ ? target.context.solid : -target.context.solid;

@@ -184,6 +184,9 @@ TEST(CityGml, AnOrientedSurfaceTurnsItsPolygonOver) {
 
 TEST(CityGml, AReferenceToAnOrientedSurfaceBringsItsOrientation) {
   const auto part = [](const std::string& content) { return "<bldg:consistsOfBuildingPart><bldg:BuildingPart>" + content + "</bldg:BuildingPart></bldg:consistsOfBuildingPart>"; };
+  const auto body = [](const std::string& geometry) {
+    return "<gml:solidMember><gml:Solid><gml:exterior><gml:CompositeSurface>" + geometry + "</gml:CompositeSurface></gml:exterior></gml:Solid></gml:solidMember>";
+  };
   const std::string oriented = "<gml:OrientableSurface gml:id='o' orientation='-'><gml:baseSurface>" + square("p", 0) + "</gml:baseSurface></gml:OrientableSurface>";
   const std::string of_both = "<gml:CompositeSurface gml:id='c'>" + member(oriented) + "</gml:CompositeSurface>";
   const std::string turned_link = member("<gml:OrientableSurface orientation='-'><gml:baseSurface xlink:href='#o'/></gml:OrientableSurface>");
@@ -196,6 +199,18 @@ TEST(CityGml, AReferenceToAnOrientedSurfaceBringsItsOrientation) {
           if (polygon.shared) heights.push_back(newell_normal(polygon.polygon).z());
       ASSERT_EQ(heights.size(), 1u) << reference;
       EXPECT_EQ(heights[0] > 0, looks_up) << reference;
+    }
+    const std::string stating_body = body(member(of_both) + member(square("", 5))), referring_body = body(reference);
+    for (const bool refers_first : {false, true}) {   // two solids of one part
+      const std::string bodies = refers_first ? referring_body + stating_body : stating_body + referring_body;
+      const auto polygons = read(document(building("<bldg:lod2Solid><gml:CompositeSolid>" + bodies + "</gml:CompositeSolid></bldg:lod2Solid>")))[0].polygons;
+      ASSERT_EQ(polygons.size(), 3u) << reference;
+      for (const ModelPolygon& polygon : polygons) {
+        const bool refers = polygon.solid == (refers_first ? 1 : 2);
+        if (polygon.shared) {
+          EXPECT_EQ(newell_normal(polygon.polygon).z() > 0, refers && looks_up) << reference;
+        }
+      }
     }
   }
 }
@@ -211,7 +226,7 @@ TEST(CityGml, ASolidSaysWhichWayItsBoundarySurfaceLooks) {
   EXPECT_TRUE(looks_up(upward + solid(link("p"))));
   EXPECT_FALSE(looks_up(upward + solid(turned_link)));
   EXPECT_FALSE(looks_up(solid(turned_link) + upward));
-  EXPECT_FALSE(looks_up(downward + solid(link("p"))));
+  EXPECT_TRUE(looks_up(downward + solid(link("p"))));   // to what the surface turns, not to what it has turned
 }
 
 TEST(CityGml, TheVoidInsideASolidIsNotSeen) {
