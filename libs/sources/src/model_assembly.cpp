@@ -193,9 +193,11 @@ class References {
   /// False where the model has too many.
   bool count(const GeometryItem& item) {
     const Polygon3& polygon = item.polygon.polygon;
+    const std::size_t count = num_vertices_of(polygon);
     if (item.is_placed) vertices_.add_placed(polygon, num_placed_);
-    num_vertices_ += num_vertices_of(polygon);
+    num_vertices_ += count;
     if (num_vertices_ <= ReferencedVertices::most_of_model) return true;
+    if (item.is_placed) vertices_.give_back(count);
     ++unresolved_;
     return false;
   }

@@ -304,6 +304,18 @@ TEST(CityGml, TemplatesPlacedBeyondWhatABuildingMayHoldAreRefused) {
   EXPECT_NE(message(1, 250).find("more than 8 million vertices"), std::string::npos);
   EXPECT_NE(message(6, 150).find("more than 32 million vertices"), std::string::npos);
   EXPECT_EQ(message(6, 150, true), "");   // of which one is kept
+  // What no longer fits beside polygons that are no templates is left out, and does not count for the file.
+  const auto body = [](const std::string& geometry) {
+    return "<gml:solidMember><gml:Solid><gml:exterior><gml:CompositeSurface>" + geometry + "</gml:CompositeSurface></gml:exterior></gml:Solid></gml:solidMember>";
+  };
+  std::string bodies, placements, full = stated + building(solid(member("<gml:CompositeSurface gml:id='wall'>" + member(huge) + "</gml:CompositeSurface>"), 3), "w");
+  for (int i = 0; i < 195; ++i) bodies += body(link("wall"));
+  for (int i = 0; i < 190; ++i) placements += placed("<core:relativeGMLGeometry xlink:href='#shape'/>", i);
+  for (int b = 0; b < 5; ++b) full += building("<bldg:lod3Solid><gml:CompositeSolid>" + bodies + "</gml:CompositeSolid></bldg:lod3Solid>" + placements, "b" + std::to_string(b));
+  std::size_t unresolved = 0;
+  const TemporaryFile file(".gml", document(full));
+  read_citygml(file.path(), options, [&](BuildingModel&& model) { unresolved += model.unresolved_references; });
+  EXPECT_EQ(unresolved, 5u * (195 + 190 - 200));
   options.lod = 2;   // as the messages say
   EXPECT_EQ(message(1, 250), "");
   EXPECT_EQ(message(6, 150), "");
