@@ -248,7 +248,9 @@ class Buildings {
     const std::string building = root(id);
     Members& members = members_[building];
     const int number = id == building ? 0 : ++members.num_parts;
+    const std::size_t first = members.items.items.size();
     GeometryReader(document_, options_, number, kind == ModelKind::terrain, members.items, referenced_, members.num_placed).read(object.value("geometry", json::array()));
+    drop_lower_levels(members, first);
     if (++members.seen < members.expected) return;
     const std::size_t num_placed = emit(building, *kind, std::move(members.items));
     if (kind == ModelKind::vegetation) referenced_.give_back(num_placed);   // the others are kept: they hide each other
@@ -273,6 +275,22 @@ class Buildings {
       id = parent->second;
     }
     return id;
+  }
+
+  /// Of the items of an object, from `first` on, what `assemble` will not choose: it may be long until the building's last member comes.
+  void drop_lower_levels(Members& members, std::size_t first) {
+    std::vector<GeometryItem>& items = members.items.items;
+    int highest = 0;
+    for (std::size_t i = first; i < items.size(); ++i) highest = std::max(highest, items[i].context.lod);
+    std::size_t num_dropped = 0;
+    const auto is_lower = [&](const GeometryItem& item) {
+      const bool lower = item.context.lod < highest;
+      if (lower && item.is_placed) num_dropped += num_vertices_of(item.polygon.polygon);
+      return lower;
+    };
+    items.erase(std::remove_if(items.begin() + static_cast<std::ptrdiff_t>(first), items.end(), is_lower), items.end());
+    referenced_.give_back(num_dropped);
+    members.num_placed -= num_dropped;
   }
 
   /// @return as `assemble`

@@ -102,12 +102,6 @@ class Resolver {
   std::size_t steps_ = 0;
 };
 
-std::size_t num_vertices_of(const Polygon3& polygon) {
-  std::size_t count = 0;
-  for_each_ring(polygon, [&](const Ring3& ring) { count += ring.size(); });
-  return count;
-}
-
 /// How a solid refers to a polygon that is stated elsewhere in its part.
 struct SolidSide {
   bool as_stated = false, turned = false;
@@ -230,6 +224,12 @@ std::map<int, int> choose_lods(const std::vector<GeometryItem>& items, const Bui
 }
 
 }  // namespace
+
+std::size_t num_vertices_of(const Polygon3& polygon) {
+  std::size_t count = 0;
+  for_each_ring(polygon, [&](const Ring3& ring) { count += ring.size(); });
+  return count;
+}
 
 void place(Polygon3& polygon, const Eigen::Affine3d& T_model_template) {
   for_each_ring(polygon, [&](Ring3& ring) { for (Eigen::Vector3d& p : ring) p = T_model_template * p; });

@@ -41,6 +41,9 @@ struct GeometryItems {
   std::unordered_map<std::string, Range> ranges;
 };
 
+/// Of all its rings.
+std::size_t num_vertices_of(const Polygon3& polygon);
+
 /// How many vertices references have put into models: a small file may refer to a large template any number of times.
 class ReferencedVertices {
  public:

@@ -147,13 +147,16 @@ TEST(CityJson, TemplatesOfLevelsThatAreNotChosenDoNotCountForTheFile) {
   const auto instance = [](int number) {
     return R"({"type":"GeometryInstance","template":)" + std::to_string(number) + R"(,"boundaries":[1],"transformationMatrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})";
   };
-  std::string ring = "0", instances = instance(0), objects;
+  std::string ring = "0", instances = instance(0), objects, parts;
   for (int i = 1; i < 200'000; ++i) ring += "," + std::to_string(i % 3);
   for (int i = 0; i < 35; ++i) instances += "," + instance(1);
   for (int i = 0; i < 6; ++i) objects += std::string(i ? "," : "") + "\"b" + std::to_string(i) + R"(":{"type":"Building","geometry":[)" + instances + "]}";   // 42 million vertices
-  const std::string text = "{" + head + "," + vertices + R"(,"geometry-templates":{"templates":[{"type":"MultiSurface","lod":"3","boundaries":[[[0,1,2]]]},)"
-      R"({"type":"MultiSurface","lod":"2","boundaries":[[[)" + ring + R"(]]]}],"vertices-templates":[[0,0,0],[1,0,0],[0,1,0]]},"CityObjects":{)" + objects + "}}";
-  EXPECT_EQ(read(text).size(), 6u);
+  for (int i = 0; i < 6; ++i) parts += ",\"p" + std::to_string(i) + R"(":{"type":"BuildingPart","parents":["b)" + std::to_string(i) + R"("],"geometry":[]})";
+  for (const std::string& members : {objects, objects + parts}) {   // buildings that are whole at once, and that wait for their parts
+    const std::string text = "{" + head + "," + vertices + R"(,"geometry-templates":{"templates":[{"type":"MultiSurface","lod":"3","boundaries":[[[0,1,2]]]},)"
+        R"({"type":"MultiSurface","lod":"2","boundaries":[[[)" + ring + R"(]]]}],"vertices-templates":[[0,0,0],[1,0,0],[0,1,0]]},"CityObjects":{)" + members + "}}";
+    EXPECT_EQ(read(text).size(), 6u);
+  }
 }
 
 TEST(CityJson, ASequenceGivesEachFeatureItsOwnVertices) {
