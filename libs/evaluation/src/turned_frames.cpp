@@ -33,7 +33,7 @@ std::string cause_and_remedy(const Eigen::Matrix3d& R_reference_estimate) {
     return "the reference" + axes_of_camera + "estimate's have z up; --kitti-calib CALIB.txt turns the reference into the velodyne's, --align se3 lays the two on each other";
   if (is_up_of_camera(R_reference_estimate.transpose() * Eigen::Vector3d::UnitZ()))
     return "the estimate" + axes_of_camera + "reference's have z up; --align se3 lays the two on each other";
-  return "they are not in one frame; --align se3 lays them on each other";
+  return "they are not in one frame, or the estimate started elsewhere; --align se3 lays them on each other";
 }
 
 }  // namespace

@@ -30,4 +30,18 @@ Matrix6d covariance_of(const Matrix6d& information) {
   return 0.5 * (covariance + covariance.transpose());
 }
 
+void doubt_what_is_contradicted(Confidence& sure, const std::vector<bool>& located) {
+  std::size_t num_located = 0, num_contradicted = 0;
+  for (std::size_t k = 0; k < located.size(); ++k) {
+    if (!located[k]) continue;
+    ++num_located;
+    if (sure.contradicted[k]) ++num_contradicted;
+  }
+  const bool nowhere = 2 * num_contradicted >= num_located;
+  for (std::size_t k = 0; k < located.size(); ++k) {
+    if (nowhere || !located[k]) sure.contradicted[k] = true;
+    if (nowhere) sure.covariances[k] += unknown_gap_covariance();
+  }
+}
+
 }  // namespace priormap

@@ -1,4 +1,6 @@
 #pragma once
+#include <vector>
+
 #include <priormap/core/se3.hpp>
 
 namespace priormap {
@@ -19,5 +21,15 @@ constexpr double usual_height_gap_m = 0.25;
 
 /// Inverse of an information matrix. Directions that nothing constrains are as uncertain as can be, but finite.
 Matrix6d covariance_of(const Matrix6d& information);
+
+/// Of each keyframe: its covariance, and whether the prior is of another place there.
+struct Confidence {
+  std::vector<Matrix6d> covariances;
+  std::vector<bool> contradicted;
+};
+
+/// Who was not found again is contradicted. Whom the prior contradicts around most places fits the others by chance: nowhere is it known where the drive is.
+/// @param located  keyframes that were found in the prior; as many as `sure` holds
+void doubt_what_is_contradicted(Confidence& sure, const std::vector<bool>& located);
 
 }  // namespace priormap

@@ -1,7 +1,6 @@
 #include "drive_estimate.hpp"
 
 #include <algorithm>
-#include <functional>
 
 #include <priormap/core/process.hpp>
 
@@ -31,12 +30,6 @@ void locate_backwards(std::vector<ScanRecord>& records) {
   }
 }
 
-/// How sure the poses of a graph are.
-struct Confidence {
-  std::vector<Matrix6d> covariances;
-  std::vector<bool> contradicted;
-};
-
 Confidence estimate_by_prior(DriveGraph& graph, const NearTiles& prior, const ReadScan& read_again, const JointMethodOptions& options, std::optional<double> known_height_m) {
   constexpr double most_moved_m = 0.1;
   PriorRounds rounds(graph, prior, read_again, options);
@@ -62,12 +55,11 @@ std::vector<EstimatedPose> estimate_drive(std::vector<ScanRecord> records, const
   center_velocities(records);
   locate_backwards(records);
   DriveGraph graph(records, options.estimate);
-  auto [covariances, contradicted] = prior ? estimate_by_prior(graph, *prior, read_again, options, known_height_m) : estimate_by_odometry(graph);
-  for (std::size_t k = 0; k < graph.size(); ++k)
-    if (!graph.is_located(k)) contradicted[k] = true;
-  if (std::ranges::all_of(contradicted, std::identity()))   // nowhere is the drive known to be
-    for (Matrix6d& covariance : covariances) covariance += unknown_gap_covariance();
-  return graph.all_poses(covariances, contradicted);
+  Confidence sure = prior ? estimate_by_prior(graph, *prior, read_again, options, known_height_m) : estimate_by_odometry(graph);
+  std::vector<bool> located;
+  for (std::size_t k = 0; k < graph.size(); ++k) located.push_back(graph.is_located(k));
+  doubt_what_is_contradicted(sure, located);
+  return graph.all_poses(sure.covariances, sure.contradicted);
 }
 
 }  // namespace priormap

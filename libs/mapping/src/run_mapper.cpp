@@ -179,7 +179,7 @@ void warn_of_bad_start(const std::vector<MappedScan>& scans, const PriorPoints& 
   const auto num_contradicted = std::ranges::count_if(scans, [](const MappedScan& scan) { return scan.contradicted; });
   if (num_contradicted > 0) {
     events.warn("around " + std::to_string(num_contradicted) + " of " + std::to_string(scans.size()) + " scans the walls of " + prior.identity().name +
-                " are not where the scans see walls, or the drive was not found again beyond a gap in the recording: check the initial pose (6 m and 12 degrees are found, more in a good prior), and that prior and scans are of one place");
+                " are not where the scans see walls, or the drive was not found again beyond a gap in the recording: check the initial pose (6 m and 12 degrees are found; 50 m and any direction where the prior holds a surface model as well), and that prior and scans are of one place");
   } else if (count(scans, Verdict::anchored) + count(scans, Verdict::weak) == 0) {
     events.warn("no scan is anchored: " + prior.identity().name + " was not matched anywhere; check the initial pose");
   } else if (const MappedScan& first = scans.front(); first.prior && !first.prior->accepted) {

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "confidence.hpp"
 #include "drive_estimate.hpp"
 #include "town.hpp"
 
@@ -75,6 +76,25 @@ TEST(DriveEstimate, ADriveThatIsNotFoundAgainIsNotAnchored) {
   for (std::size_t i = 14; i < records.size(); ++i) records[i].located = false;
   const auto poses = estimate_drive(records, std::nullopt, {}, {});
   for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_EQ(poses[i].contradicted, i >= 10) << i;
+}
+
+/// A start 500 m off at the fringe of a town: here and there walls fit.
+TEST(DriveEstimate, ADriveThatWallsContradictInMostPlacesIsKnownInNone) {
+  const auto doubted = [](const std::vector<bool>& contradicted, const std::vector<bool>& located) {
+    Confidence sure{std::vector<Matrix6d>(contradicted.size(), 0.01 * Matrix6d::Identity()), contradicted};
+    doubt_what_is_contradicted(sure, located);
+    return sure;
+  };
+  const std::vector<bool> all(4, true);
+  const Confidence one = doubted({false, true, false, false}, all);
+  EXPECT_EQ(one.contradicted, std::vector<bool>({false, true, false, false}));
+  EXPECT_LT(one.covariances[0](3, 3), 1);
+  const Confidence most = doubted({false, true, true, true}, all);
+  EXPECT_EQ(most.contradicted, all);
+  for (const Matrix6d& covariance : most.covariances) EXPECT_GT(covariance(3, 3), 50 * 50);
+  const Confidence lost_later = doubted({false, false, false, false}, {true, false, false, false});   // says nothing of what came before
+  EXPECT_EQ(lost_later.contradicted, std::vector<bool>({false, true, true, true}));
+  EXPECT_LT(lost_later.covariances[0](3, 3), 1);
 }
 
 TEST(DriveEstimate, WithoutAPriorNoHeightIsDoubted) {
