@@ -19,14 +19,14 @@ void center_velocities(std::vector<ScanRecord>& records) {
   }
 }
 
-/// Beyond a gap in the odometry, what came before the drive was found again lies where the odometry says from there.
+/// Between gaps in the odometry, the last scan tells: what came before the drive was found lies where the odometry says from there, and a start that is not believed in the end never was right.
 void locate_backwards(std::vector<ScanRecord>& records) {
   for (std::size_t i = records.size(); i-- > 1;) {
     const ScanRecord& after = records[i];
     ScanRecord& before = records[i - 1];
-    if (!after.located || before.located || after.odometry.began_anew) continue;
-    before.T_map_online = after.T_map_online * after.odometry.T_odom_sensor.inverse() * before.odometry.T_odom_sensor;
-    before.located = true;
+    if (after.located == before.located || after.odometry.began_anew) continue;
+    if (after.located) before.T_map_online = after.T_map_online * after.odometry.T_odom_sensor.inverse() * before.odometry.T_odom_sensor;
+    before.located = after.located;
   }
 }
 

@@ -78,6 +78,13 @@ TEST(DriveEstimate, ADriveThatIsNotFoundAgainIsNotAnchored) {
   for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_EQ(poses[i].contradicted, i >= 10) << i;
 }
 
+TEST(DriveEstimate, AStartThatIsNotBelievedInTheEndNeverWasRight) {
+  std::vector<ScanRecord> records = drive_with_a_gap();
+  records.resize(10);
+  for (std::size_t i = 5; i < records.size(); ++i) records[i].located = false;
+  for (const EstimatedPose& pose : estimate_drive(records, std::nullopt, {}, {})) EXPECT_TRUE(pose.contradicted);
+}
+
 /// A start 500 m off at the fringe of a town: here and there walls fit.
 TEST(DriveEstimate, ADriveThatWallsContradictInMostPlacesIsKnownInNone) {
   const auto doubted = [](const std::vector<bool>& contradicted, const std::vector<bool>& located) {
